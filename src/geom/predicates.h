@@ -1,0 +1,24 @@
+/* Exact geometric predicates on doubles.
+ * Layer: geom. */
+#ifndef SL_GEOM_PREDICATES_H
+#define SL_GEOM_PREDICATES_H
+
+#include "base/status.h"
+
+/* Sign of twice the signed area of triangle a b c: +1 counter-clockwise, -1 clockwise, 0 exactly collinear. Exact for all
+ * finite doubles whose products neither overflow nor underflow (|x| in {0} or [2^-500, 2^500]).
+ * Source: Shewchuk 1997, "Adaptive precision floating-point arithmetic"; filter, then exact expansions. */
+int sl_orient2d(const double a[2], const double b[2], const double c[2]);
+
+/* How two closed segments ab and cd meet. */
+typedef enum sl_crossing {
+    SL_CROSS_NONE,   /* no common point */
+    SL_CROSS_TOUCH,  /* a common point that is an end of one of them, not a proper crossing */
+    SL_CROSS_PROPER, /* interiors cross in one point */
+    SL_CROSS_OVERLAP /* collinear with more than one common point */
+} sl_crossing;
+
+/* Exact, by sl_orient2d. */
+sl_crossing sl_segments_cross(const double a[2], const double b[2], const double c[2], const double d[2]);
+
+#endif
