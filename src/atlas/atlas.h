@@ -1,0 +1,67 @@
+/* The whole way: a mesh file's polygons in, one checked texture atlas out.
+ * Layer: atlas (may include segment, pack, meshio and all below). */
+#ifndef SL_ATLAS_ATLAS_H
+#define SL_ATLAS_ATLAS_H
+
+#include "atlas/seams.h"
+#include "mesh/build.h"
+#include "pack/pack.h"
+#include "segment/segment.h"
+
+typedef struct sl_atlas_def {
+    sl_segment_def segment;
+    sl_pack_def pack;
+    sl_seam_source seams;    /* who cuts: default SL_SEAMS_AUTOMATIC */
+    sl_seam_input seam_input; /* borrowed; what the other sources need */
+    int32_t check_resolution; /* texels a side of the last overlap test; default 4096 */
+} sl_atlas_def;
+
+sl_atlas_def sl_atlas_default(void);
+
+/* What the finished atlas was found to be, judged on the UVs as written. */
+typedef struct sl_atlas_check {
+    int32_t flipped;            /* triangles of the wrong orientation, by exact predicate */
+    int32_t degenerate;         /* UV triangles of zero area whose 3D triangle has some */
+    int32_t uncertified_charts; /* charts without a proof that they do not overlap themselves */
+    int32_t resolution;         /* texels a side */
+    int64_t covered_texels, overlapping_texels;
+    bool passed;                /* nothing flipped, degenerate, overlapping or uncertified */
+} sl_atlas_check;
+
+/* A sentence for the user about one chart (or none: -1). */
+typedef struct sl_warning {
+    int32_t chart;
+    char text[192];
+} sl_warning;
+
+typedef struct sl_atlas {
+    sl_mesh *mesh;
+    sl_triangulation *triangulation;
+    sl_repair_report repair;
+    sl_segmentation *segmentation;
+    double *corner_uv;       /* nh x 2, by mesh halfedge, quantised as files hold them, in [0, 1] */
+    double *input_corner_uv; /* the same by input corner */
+    sl_placement *placement; /* one a chart */
+    sl_pack_info pack;
+    sl_atlas_check check;
+    int32_t nwarning;
+    sl_warning *warning;
+} sl_atlas;
+
+/* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check. *out is given also when its check
+ * did not pass (look at check.passed: what fails must not be delivered). SL_BAD_INPUT, SL_INFEASIBLE (the user's seams leave a chart that is no
+ * disk, or too many charts for the page), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. diag is nullable. Same bytes
+ * for any number of threads. */
+SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context,
+                                 sl_atlas **out, sl_diag *diag);
+
+void sl_atlas_free(sl_atlas *atlas); /* NULL is a no-op */
+
+/* Seam edges as mesh halfedges, one per edge cut or opened along differing UVs of two charts; *count of them. Owned by
+ * the caller (sl_free). SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_atlas_seams(const sl_mesh *mesh, int32_t **halfedge, int32_t *count);
+
+/* Total length of the seams, normalised mesh; divide by sl_mesh_diagonal for the usual figure. */
+double sl_atlas_seam_length(const sl_mesh *mesh);
+
+#endif

@@ -1,0 +1,85 @@
+/* Angle based flattening, ABF++: the angles of the flat triangles as a constrained minimum.
+ *
+ *     min sum w_c (alpha_c - phi_c)^2   subject to   g1(t) = 0, g2(s) = 0, g3(v) = 0      (paper, Eqs. 1-4)
+ *
+ * Layer: param. */
+#ifndef SL_PARAM_ABF_H
+#define SL_PARAM_ABF_H
+
+#include "base/context.h"
+#include "mesh/patch.h"
+
+/* Runs of corners with a prescribed sum of planar angles; see sl_abf_eval_g2. */
+typedef struct sl_sectors {
+    int32_t count;
+    const int32_t *first;  /* count + 1 */
+    const int32_t *corner; /* first[count] patch corners */
+    const double *theta;   /* count, prescribed sums [rad] */
+} sl_sectors;
+
+typedef enum sl_abf_energy {
+    SL_ABF_WEIGHTED,  /* w = 1 / phi^2, as ABF++ publishes it (default) */
+    SL_ABF_UNWEIGHTED /* w = 1, the paper's Eq. 1 */
+} sl_abf_energy;
+
+typedef enum sl_abf_wheel {
+    SL_ABF_LOG,    /* g3 = sum log sin - sum log sin (default) */
+    SL_ABF_PRODUCT /* g3 = prod sin - prod sin, as ABF++ publishes it */
+} sl_abf_wheel;
+
+typedef struct sl_abf_def {
+    sl_abf_energy energy;
+    sl_abf_wheel wheel;
+    const sl_sectors *sectors; /* borrowed; NULL (default) = one sector of 2 pi per interior vertex */
+    int32_t max_iterations;    /* Newton steps; default 40 */
+    double gradient_tolerance; /* stop at |g| <= this, the max norm of the Lagrangian's gradient; default 1e-6 */
+    double accept_gradient;    /* a result is accepted below this; default 1e-5 */
+    double constraint_tolerance; /* and with max |g1|, |g2|, |g3| below this [rad, 1]; default 1e-9 */
+    double min_angle;          /* measured angles are clamped up to this [rad]; default 0.1 degree */
+} sl_abf_def;
+
+sl_abf_def sl_abf_default(void);
+
+typedef struct sl_abf_info {
+    int32_t iterations;
+    bool converged;       /* gradient and constraints below their tolerances, every angle > 0 */
+    bool stalled;         /* no step keeps the angles positive, or the system could not be factored */
+    double energy;        /* Eq. 1 with its weights */
+    double gradient;      /* |g| */
+    double g1, g2, g3;    /* max norms of the residuals */
+    double min_angle;     /* [rad] */
+    double step;          /* length of the last step taken, 1 = full Newton */
+} sl_abf_info;
+
+typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
+
+/* SL_INFEASIBLE (a sector without corners), SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **out);
+
+/* Up to n Newton steps; stops early when converged or stalled. Allocates nothing. SL_CANCELLED. */
+SL_NODISCARD sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context);
+
+const sl_abf_info *sl_abf_info_of(const sl_abf *solver); /* borrowed */
+const double *sl_abf_angles(const sl_abf *solver);       /* 3 nt planar angles [rad], borrowed */
+
+void sl_abf_free(sl_abf *solver); /* NULL is a no-op */
+
+/* Optimal angles phi and weights w of a patch (3 nt each): beta measured, clamped, scaled around interior vertices. */
+void sl_abf_targets(const sl_patch *patch, const sl_abf_def *def, double *phi, double *w);
+
+/* Residuals; see abf_constraints.c for their formulas. g1: nt; g2: sectors->count; g3: one per interior vertex in vertex order. */
+void sl_abf_eval_g1(const sl_patch *patch, const double *alpha, double *g1);
+void sl_abf_eval_g2(const sl_sectors *sectors, const double *alpha, double *g2);
+void sl_abf_eval_g3(const sl_patch *patch, sl_abf_wheel wheel, const double *alpha, double *g3);
+
+/* Positions from angles by least squares over all triangles (Levy et al. 2002 with the planar angles in place of the 3D
+ * ones, as ABF++ does), scaled to the patch's 3D area. uv: nv x 2. SL_SINGULAR, SL_OUT_OF_MEMORY, SL_CANCELLED. */
+SL_NODISCARD sl_status sl_abf_reconstruct(const sl_patch *patch, const double *alpha, const sl_context *context,
+                                          double *uv);
+
+/* create, step until converged, reconstruct. Not converging is no error: info says so and uv is then the reconstruction
+ * of the last positive angles. info may be NULL. */
+SL_NODISCARD sl_status sl_abf_flatten(const sl_patch *patch, const sl_abf_def *def, const sl_context *context,
+                                      double *uv, sl_abf_info *info);
+
+#endif

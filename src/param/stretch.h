@@ -1,0 +1,52 @@
+/* Flip-free minimisation of a stretch energy, starting from any flip-free map.
+ *
+ *     E = sum over triangles A_t ((1 - w)(s1^2 + s2^2) + 2 w s1 s2 + s1^-2 + s2^-2)
+ *
+ * w = 0: symmetric Dirichlet; w = 1: Sander's L2 plus area, exactly what the bound on stretch measures.
+ * Layer: param. */
+#ifndef SL_PARAM_STRETCH_H
+#define SL_PARAM_STRETCH_H
+
+#include "base/context.h"
+#include "mesh/patch.h"
+
+typedef struct sl_stretch_def {
+    double w;                /* energy weight in [0, 1]; default 0 */
+    int32_t max_iterations;  /* projected Newton steps; default 60 */
+    double relative_decrease; /* stop when a step lowers the energy by less than this share; default 1e-4 */
+    double target_l2;        /* stop as soon as the L2 stretch is at most this; 0 = never; default 0 */
+    double hopeless_l2;      /* give up after `hopeless_after` steps when L2 is still above this; 0 = never; default 0 */
+    int32_t hopeless_after;  /* default 15 */
+    bool simple_border;      /* refuse steps that make the border cross itself; needs a simple start; default false */
+} sl_stretch_def;
+
+sl_stretch_def sl_stretch_default(void);
+
+typedef struct sl_stretch_info {
+    int32_t iterations;
+    double energy_before, energy_after; /* divided by the total area: 4 = isometric for w = 0 */
+    double l2;                          /* of the result, the chart's best scale */
+    bool converged;                     /* stopped by relative_decrease or target_l2, not by the iteration bound */
+    bool hopeless;
+} sl_stretch_info;
+
+typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor; borrows the patch */
+
+/* uv: nv x 2, copied; must have no flipped or zero-area triangle (3D-degenerate triangles are given a small regular
+ * target). SL_BAD_INPUT otherwise; SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def,
+                                         sl_stretch **out);
+
+/* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of the
+ * first flip (Smith and Schaefer 2015), Armijo. Stays flip-free. SL_CANCELLED. Allocates nothing. */
+SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_context *context);
+
+const sl_stretch_info *sl_stretch_info_of(const sl_stretch *solver);
+const double *sl_stretch_uv(const sl_stretch *solver); /* nv x 2, borrowed */
+void sl_stretch_free(sl_stretch *solver);              /* NULL is a no-op */
+
+/* create, step to the end; uv in and out. info may be NULL. */
+SL_NODISCARD sl_status sl_stretch_minimise(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context,
+                                           double *uv, sl_stretch_info *info);
+
+#endif
