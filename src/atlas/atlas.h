@@ -11,7 +11,7 @@
 typedef struct sl_atlas_def {
     sl_segment_def segment;
     sl_pack_def pack;
-    sl_seam_source seams;    /* who cuts: default SL_SEAMS_AUTOMATIC */
+    sl_seam_source seams;     /* who cuts: default SL_SEAMS_AUTOMATIC */
     sl_seam_input seam_input; /* borrowed; what the other sources need */
     int32_t check_resolution; /* texels a side of the last overlap test; default 4096 */
 } sl_atlas_def;
@@ -25,7 +25,7 @@ typedef struct sl_atlas_check {
     int32_t uncertified_charts; /* charts without a proof that they do not overlap themselves */
     int32_t resolution;         /* texels a side */
     int64_t covered_texels, overlapping_texels;
-    bool passed;                /* nothing flipped, degenerate, overlapping or uncertified */
+    bool passed; /* nothing flipped, degenerate, overlapping or uncertified */
 } sl_atlas_check;
 
 /* A sentence for the user about one chart (or none: -1). */
@@ -48,10 +48,10 @@ typedef struct sl_atlas {
     sl_warning *warning;
 } sl_atlas;
 
-/* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check. *out is given also when its check
- * did not pass (look at check.passed: what fails must not be delivered). SL_BAD_INPUT, SL_INFEASIBLE (the user's seams leave a chart that is no
- * disk, or too many charts for the page), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. diag is nullable. Same bytes
- * for any number of threads. */
+/* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check. *out is given also when its
+ * check did not pass (look at check.passed: what fails must not be delivered). SL_BAD_INPUT, SL_INFEASIBLE (the user's
+ * seams leave a chart that is no disk, or too many charts for the page), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
+ * diag is nullable. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context,
                                  sl_atlas **out, sl_diag *diag);
 

@@ -19,12 +19,12 @@ typedef struct atlas_view {
     const sl_polygons *polygons;
     sl_mesh *mesh; /* for the repair's reorientation and the normalisation */
     int32_t nt;
-    double *xyz;            /* 9 nt, normalised */
-    double *uv;             /* 6 nt, bounding square moved to [0, 1]^2 */
-    int32_t *face_chart;    /* nf */
+    double *xyz;         /* 9 nt, normalised */
+    double *uv;          /* 6 nt, bounding square moved to [0, 1]^2 */
+    int32_t *face_chart; /* nf */
     int32_t charts;
-    int32_t *chart_first;   /* charts + 1: triangle range of a chart */
-    double seam_length;     /* normalised units */
+    int32_t *chart_first; /* charts + 1: triangle range of a chart */
+    double seam_length;   /* normalised units */
 } atlas_view;
 
 static void view_clear(atlas_view *view)

@@ -30,8 +30,8 @@ typedef struct sl_context {
 SL_NODISCARD sl_status sl_report_progress(const sl_context *context, const char *stage, double fraction);
 
 /* Splits [0, count) into chunks of chunk_size (the last may be shorter) and calls fn for each, in any order and on any
- * worker. Chunk borders depend on count and chunk_size alone, so a reduction per chunk, summed in chunk order, gives the
- * same bytes for any number of workers. */
+ * worker. Chunk borders depend on count and chunk_size alone, so a reduction per chunk, summed in chunk order, gives
+ * the same bytes for any number of workers. */
 void sl_parallel_for(const sl_context *context, int64_t count, int64_t chunk_size, sl_chunk_fn *fn, void *user);
 
 /* How many chunks sl_parallel_for makes. */

@@ -10,7 +10,8 @@
  * SL_IO (missing, a folder, unreadable), SL_OUT_OF_MEMORY. diag is nullable. */
 SL_NODISCARD sl_status sl_file_read(const char *path, char **data, int64_t *size, sl_diag *diag);
 
-/* A file being written: a temporary beside the final name, renamed on commit. Buffered; errors are kept until commit. */
+/* A file being written: a temporary beside the final name, renamed on commit. Buffered; errors are kept until commit.
+ */
 typedef struct sl_writer sl_writer;
 
 /* Opens PATH's temporary ("-" = standard output, no temporary). SL_IO, SL_OUT_OF_MEMORY. */

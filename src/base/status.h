@@ -37,12 +37,12 @@ const char *sl_status_name(sl_status status);
 
 /* What was wrong, where, and what to do about it. Zero-initialise before use; owned by the caller. */
 typedef struct sl_diag {
-    char file[256];     /* path as given; "" when there is none */
-    int64_t line;       /* 1-based line of a text file, 0 = none */
-    int64_t byte;       /* byte offset in a binary file, -1 = none */
-    int64_t element;    /* index of the face, vertex, chart, ... concerned, -1 = none */
-    char reason[256];   /* what is wrong, one sentence without a full stop */
-    char hint[256];     /* what the user can do; "" when there is nothing */
+    char file[256];   /* path as given; "" when there is none */
+    int64_t line;     /* 1-based line of a text file, 0 = none */
+    int64_t byte;     /* byte offset in a binary file, -1 = none */
+    int64_t element;  /* index of the face, vertex, chart, ... concerned, -1 = none */
+    char reason[256]; /* what is wrong, one sentence without a full stop */
+    char hint[256];   /* what the user can do; "" when there is nothing */
 } sl_diag;
 
 /* An empty diagnostic. */

@@ -11,8 +11,9 @@
 /* Shortest decimal that reads back as exactly this double ("0.1", "1e-30", "nan", "inf"). Returns its length. */
 int32_t sl_format_double(double value, char text[SL_DOUBLE_TEXT]);
 
-/* Parses a decimal number at [begin, end); correctly rounded. Returns the first unread character, or begin when there is no
- * number. Accepts an optional sign, digits, a point, an exponent; nan and inf (any case) read as such. Locale-free. */
+/* Parses a decimal number at [begin, end); correctly rounded. Returns the first unread character, or begin when there
+ * is no number. Accepts an optional sign, digits, a point, an exponent; nan and inf (any case) read as such.
+ * Locale-free. */
 const char *sl_parse_double(const char *begin, const char *end, double *value);
 
 /* Parses an optional sign and digits. Returns begin when there is no number or it does not fit. */

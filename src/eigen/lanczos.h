@@ -1,6 +1,6 @@
-/* The k smallest eigenpairs of a graph Laplacian (or any symmetric positive semidefinite matrix with a known null space)
- * by shift-invert block Lanczos with full reorthogonalisation and thick restarts.
- * Layer: eigen (may include sparse, base). */
+/* The k smallest eigenpairs of a graph Laplacian (or any symmetric positive semidefinite matrix with a known null
+ * space) by shift-invert block Lanczos with full reorthogonalisation and thick restarts. Layer: eigen (may include
+ * sparse, base). */
 #ifndef SL_EIGEN_LANCZOS_H
 #define SL_EIGEN_LANCZOS_H
 
@@ -45,21 +45,22 @@ SL_NODISCARD sl_status sl_lanczos_step(sl_lanczos *solver, int32_t n);
 
 const sl_lanczos_info *sl_lanczos_info_of(const sl_lanczos *solver); /* borrowed */
 
-/* The pairs found, ascending: lambda: count values; vectors: n x count column-major, orthonormal, sign rule: the entry of
- * largest magnitude (the first of them, ties within 1e-8 relative) is positive; residual (nullable): count recomputed
+/* The pairs found, ascending: lambda: count values; vectors: n x count column-major, orthonormal, sign rule: the entry
+ * of largest magnitude (the first of them, ties within 1e-8 relative) is positive; residual (nullable): count
+ * recomputed
  * ||A v - lambda v|| / ||A||_1. */
 void sl_lanczos_result(const sl_lanczos *solver, double *lambda, double *vectors, double *residual);
 
 void sl_lanczos_free(sl_lanczos *solver); /* NULL is a no-op */
 
-/* create, step to the end, result, free. lambda: min(count, n) values, vectors n x min(count, n), both the caller's. Not
- * converging is no error: see info (nullable). Multiplicities up to the block width are found; a final random-start
+/* create, step to the end, result, free. lambda: min(count, n) values, vectors n x min(count, n), both the caller's.
+ * Not converging is no error: see info (nullable). Multiplicities up to the block width are found; a final random-start
  * check block hunts for missed copies and is reported in info.solves. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_lanczos_solve(const sl_csc *A, const sl_lanczos_def *def, const sl_context *context,
                                         double *lambda, double *vectors, double *residual, sl_lanczos_info *info);
 
-/* All eigenpairs of a small dense symmetric matrix through LAPACKE (dsyevr): A n x n column-major, destroyed; lambda n ascending; V n x n.
- * SL_INTERNAL, SL_OUT_OF_MEMORY. */
+/* All eigenpairs of a small dense symmetric matrix through LAPACKE (dsyevr): A n x n column-major, destroyed; lambda n
+ * ascending; V n x n. SL_INTERNAL, SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_dense_eigen(int32_t n, double *A, double *lambda, double *V);
 
 #endif

@@ -26,15 +26,15 @@ typedef struct sl_repair_report {
     int32_t one_sided_cuts;           /* edges cut for that */
     int32_t duplicate_faces, degenerate_faces;
     int32_t triangles, quads, ngons;
-    int32_t *reversed;   /* reversed_faces facet numbers, ascending */
-    int32_t *duplicate;  /* duplicate_faces */
-    int32_t *degenerate; /* degenerate_faces */
-    int32_t *bowtie;     /* bowtie_vertices input vertex numbers */
+    int32_t *reversed;    /* reversed_faces facet numbers, ascending */
+    int32_t *duplicate;   /* duplicate_faces */
+    int32_t *degenerate;  /* degenerate_faces */
+    int32_t *bowtie;      /* bowtie_vertices input vertex numbers */
     int32_t *nonmanifold; /* 2 x nonmanifold_edges input vertex numbers */
 } sl_repair_report;
 
-/* Builds the mesh. Facets keep their order and their corners; vertices keep their order, copies made for bowties and cut
- * non-manifold edges follow after the input's.
+/* Builds the mesh. Facets keep their order and their corners; vertices keep their order, copies made for bowties and
+ * cut non-manifold edges follow after the input's.
  *
  *   non-manifold edge (3+ facets)   all its facets are cut apart along it
  *   bowtie vertex                   one vertex per fan
@@ -43,9 +43,10 @@ typedef struct sl_repair_report {
  *   duplicate, degenerate facet     kept, but without neighbours
  *
  * Coordinates are normalised by a translation and a power of two. *out and *report are owned by the caller; report may
- * be NULL. SL_BAD_INPUT (not finite, an index out of range, a facet of fewer than 3 corners, no facet at all: diag names
- * the element), SL_OUT_OF_MEMORY. Deterministic. O(corners log corners). */
-SL_NODISCARD sl_status sl_mesh_build(const sl_polygons *polygons, sl_mesh **out, sl_repair_report *report, sl_diag *diag);
+ * be NULL. SL_BAD_INPUT (not finite, an index out of range, a facet of fewer than 3 corners, no facet at all: diag
+ * names the element), SL_OUT_OF_MEMORY. Deterministic. O(corners log corners). */
+SL_NODISCARD sl_status sl_mesh_build(const sl_polygons *polygons, sl_mesh **out, sl_repair_report *report,
+                                     sl_diag *diag);
 
 void sl_repair_report_clear(sl_repair_report *report); /* frees the lists, zeroes the struct */
 

@@ -10,25 +10,27 @@
  * adjacency is halfedge[p] (leaving the node's own facet). Facets that share two edges are joined twice; loops (a facet
  * glued to itself, the diagonal of a pair) are dropped. */
 typedef struct sl_facet_graph {
-    sl_graph graph;      /* n nodes; weight NULL: the paper's graph is unweighted */
-    int32_t *halfedge;   /* graph.first[n]: mesh halfedge crossed */
-    int32_t *node;       /* nfaces: node of faces[i] */
-    double *centroid;    /* n x 3 */
+    sl_graph graph;    /* n nodes; weight NULL: the paper's graph is unweighted */
+    int32_t *halfedge; /* graph.first[n]: mesh halfedge crossed */
+    int32_t *node;     /* nfaces: node of faces[i] */
+    double *centroid;  /* n x 3 */
 } sl_facet_graph;
 
 /* partner[f] = facet paired with f into a quad, or -1. Length mesh->nf; from sl_pair_triangles. */
 
-/* The graph of faces[0 .. nfaces - 1] over twin pointers inside the set. partner may be NULL (no pairing); a pair counts
- * only when both its facets are in the set and glued. Node order = order of the first facet. SL_OUT_OF_MEMORY. O(corners). */
+/* The graph of faces[0 .. nfaces - 1] over twin pointers inside the set. partner may be NULL (no pairing); a pair
+ * counts only when both its facets are in the set and glued. Node order = order of the first facet. SL_OUT_OF_MEMORY.
+ * O(corners). */
 SL_NODISCARD sl_status sl_facet_graph_create(const sl_mesh *mesh, const int32_t *faces, int32_t nfaces,
                                              const int32_t *partner, sl_facet_graph **out);
 
 void sl_facet_graph_free(sl_facet_graph *graph); /* NULL is a no-op */
 
-/* Pairs triangles back into quads: candidate pairs are scored by the quality of the quad they would form (planarity, right
- * angles) and by how much the shared edge looks like a diagonal, and matched greedily best first, then improved along
- * augmenting paths while that pairs more triangles. *paired_fraction = share of the triangles paired well enough to call
- * the mesh a triangulated quad mesh (`--pair auto` pairs when it is at least 0.9). partner: nf. SL_OUT_OF_MEMORY. */
+/* Pairs triangles back into quads: candidate pairs are scored by the quality of the quad they would form (planarity,
+ * right angles) and by how much the shared edge looks like a diagonal, and matched greedily best first, then improved
+ * along augmenting paths while that pairs more triangles. *paired_fraction = share of the triangles paired well enough
+ * to call the mesh a triangulated quad mesh (`--pair auto` pairs when it is at least 0.9). partner: nf.
+ * SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_pair_triangles(const sl_mesh *mesh, int32_t *partner, double *paired_fraction);
 
 #endif

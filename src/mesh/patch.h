@@ -41,9 +41,9 @@ static inline bool sl_patch_is_disk(const sl_patch *p)
 SL_NODISCARD sl_status sl_patch_extract(const sl_mesh *mesh, const sl_triangulation *triangulation,
                                         const int32_t *faces, int32_t nfaces, sl_patch **out);
 
-/* A patch straight from triangles (tests, tools): xyz nv x 3, tri 3 nt, consistently oriented and edge-manifold; a vertex
- * of several fans is split. corner[c] = c, facet[t] = t. SL_BAD_INPUT (an edge used twice in one direction, an index
- * out of range), SL_OUT_OF_MEMORY. */
+/* A patch straight from triangles (tests, tools): xyz nv x 3, tri 3 nt, consistently oriented and edge-manifold; a
+ * vertex of several fans is split. corner[c] = c, facet[t] = t. SL_BAD_INPUT (an edge used twice in one direction, an
+ * index out of range), SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_patch_from_triangles(int32_t nv, const double *xyz, int32_t nt, const int32_t *tri,
                                                sl_patch **out);
 

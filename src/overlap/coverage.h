@@ -6,15 +6,15 @@
 #include "base/context.h"
 
 /* A square window of UV space and its texels: texel (x, y) has its centre at ((x + 1/2) / W, (y + 1/2) / H) of the
- * window [0, 1]^2, row 0 at v = 0. Fill rule: top-left, 8 sub-pixel bits, float32 transform; bit for bit llvmpipe's rule
- * for power-of-two sizes (reports/design/raster.md). */
+ * window [0, 1]^2, row 0 at v = 0. Fill rule: top-left, 8 sub-pixel bits, float32 transform; bit for bit llvmpipe's
+ * rule for power-of-two sizes (reports/design/raster.md). */
 typedef struct sl_coverage {
     int32_t width, height;
     uint16_t *count; /* width * height, row-major, saturating at 65535 */
 } sl_coverage;
 
 SL_NODISCARD sl_status sl_coverage_create(int32_t width, int32_t height, sl_coverage **out); /* zeroed */
-void sl_coverage_free(sl_coverage *coverage); /* NULL is a no-op */
+void sl_coverage_free(sl_coverage *coverage);                                                /* NULL is a no-op */
 
 /* Adds 1 to every texel inside each triangle, whatever its orientation; zero-area ones (after snapping) add nothing.
  * uv: nv x 2 in [0, 1]; tri: 3 nt indices. SL_BAD_INPUT: a UV not finite or beyond |u| > 2^14. Deterministic for any

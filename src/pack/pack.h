@@ -14,7 +14,7 @@ typedef struct sl_pack_chart {
 
 /* Where a chart went: atlas uv = scale * R(angle) uv + offset, in [0, 1]^2. */
 typedef struct sl_placement {
-    double angle;     /* [rad] */
+    double angle; /* [rad] */
     double offset[2];
 } sl_placement;
 
@@ -32,9 +32,10 @@ typedef struct sl_pack_info {
     int32_t attempts; /* scales tried */
 } sl_pack_info;
 
-/* placement: count. Charts are never reflected. By shape: horizon per chart outline at a coarse grid of the target resolution, largest first, the scale
- * found by bisection over counted attempts. Zero-size charts (isolated degenerate facets) get one texel each.
- * SL_INFEASIBLE (so many charts that one texel each and their margins do not fit), SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic. */
+/* placement: count. Charts are never reflected. By shape: horizon per chart outline at a coarse grid of the target
+ * resolution, largest first, the scale found by bisection over counted attempts. Zero-size charts (isolated degenerate
+ * facets) get one texel each. SL_INFEASIBLE (so many charts that one texel each and their margins do not fit),
+ * SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic. */
 SL_NODISCARD sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def *def,
                                const sl_context *context, sl_placement *placement, sl_pack_info *info);
 

@@ -30,25 +30,25 @@ typedef enum sl_abf_wheel {
 typedef struct sl_abf_def {
     sl_abf_energy energy;
     sl_abf_wheel wheel;
-    const sl_sectors *sectors; /* borrowed; NULL (default) = one sector of 2 pi per interior vertex */
-    int32_t max_iterations;    /* Newton steps; default 40 */
-    double gradient_tolerance; /* stop at |g| <= this, the max norm of the Lagrangian's gradient; default 1e-6 */
-    double accept_gradient;    /* a result is accepted below this; default 1e-5 */
+    const sl_sectors *sectors;   /* borrowed; NULL (default) = one sector of 2 pi per interior vertex */
+    int32_t max_iterations;      /* Newton steps; default 40 */
+    double gradient_tolerance;   /* stop at |g| <= this, the max norm of the Lagrangian's gradient; default 1e-6 */
+    double accept_gradient;      /* a result is accepted below this; default 1e-5 */
     double constraint_tolerance; /* and with max |g1|, |g2|, |g3| below this [rad, 1]; default 1e-9 */
-    double min_angle;          /* measured angles are clamped up to this [rad]; default 0.1 degree */
+    double min_angle;            /* measured angles are clamped up to this [rad]; default 0.1 degree */
 } sl_abf_def;
 
 sl_abf_def sl_abf_default(void);
 
 typedef struct sl_abf_info {
     int32_t iterations;
-    bool converged;       /* gradient and constraints below their tolerances, every angle > 0 */
-    bool stalled;         /* no step keeps the angles positive, or the system could not be factored */
-    double energy;        /* Eq. 1 with its weights */
-    double gradient;      /* |g| */
-    double g1, g2, g3;    /* max norms of the residuals */
-    double min_angle;     /* [rad] */
-    double step;          /* length of the last step taken, 1 = full Newton */
+    bool converged;    /* gradient and constraints below their tolerances, every angle > 0 */
+    bool stalled;      /* no step keeps the angles positive, or the system could not be factored */
+    double energy;     /* Eq. 1 with its weights */
+    double gradient;   /* |g| */
+    double g1, g2, g3; /* max norms of the residuals */
+    double min_angle;  /* [rad] */
+    double step;       /* length of the last step taken, 1 = full Newton */
 } sl_abf_info;
 
 typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
@@ -67,7 +67,8 @@ void sl_abf_free(sl_abf *solver); /* NULL is a no-op */
 /* Optimal angles phi and weights w of a patch (3 nt each): beta measured, clamped, scaled around interior vertices. */
 void sl_abf_targets(const sl_patch *patch, const sl_abf_def *def, double *phi, double *w);
 
-/* Residuals; see abf_constraints.c for their formulas. g1: nt; g2: sectors->count; g3: one per interior vertex in vertex order. */
+/* Residuals; see abf_constraints.c for their formulas. g1: nt; g2: sectors->count; g3: one per interior vertex in
+ * vertex order. */
 void sl_abf_eval_g1(const sl_patch *patch, const double *alpha, double *g1);
 void sl_abf_eval_g2(const sl_sectors *sectors, const double *alpha, double *g2);
 void sl_abf_eval_g3(const sl_patch *patch, sl_abf_wheel wheel, const double *alpha, double *g3);

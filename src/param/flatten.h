@@ -9,11 +9,11 @@
 #include "param/stretch.h"
 
 typedef enum sl_flatten_method {
-    SL_FLATTEN_NONE,      /* not a disk, or nothing worked */
-    SL_FLATTEN_ABF,       /* ABF++ */
-    SL_FLATTEN_LSCM,      /* least squares conformal */
-    SL_FLATTEN_TUTTE,     /* Tutte's embedding: reported as a fallback */
-    SL_FLATTEN_PLANAR     /* one facet, or coplanar: projected */
+    SL_FLATTEN_NONE,  /* not a disk, or nothing worked */
+    SL_FLATTEN_ABF,   /* ABF++ */
+    SL_FLATTEN_LSCM,  /* least squares conformal */
+    SL_FLATTEN_TUTTE, /* Tutte's embedding: reported as a fallback */
+    SL_FLATTEN_PLANAR /* one facet, or coplanar: projected */
 } sl_flatten_method;
 
 /* Why a chart is not valid. */
@@ -28,7 +28,8 @@ typedef enum sl_flatten_verdict {
 
 typedef struct sl_flatten_def {
     sl_abf_def abf;
-    bool minimise_stretch; /* after ABF++ (or Tutte), while L2 exceeds max_stretch: flip-free minimisation; default true */
+    bool minimise_stretch; /* after ABF++ (or Tutte), while L2 exceeds max_stretch: flip-free minimisation; default true
+                            */
     bool tutte;            /* Tutte as last resort where ABF++ fails; default true */
     double max_stretch;    /* tau, the bound on L2; default 1.5; infinite = none */
     sl_stretch_def stretch;
@@ -38,9 +39,9 @@ sl_flatten_def sl_flatten_default(void);
 
 typedef struct sl_flatten_result {
     sl_flatten_verdict verdict;
-    sl_flatten_method method;   /* where the map came from */
-    bool stretch_minimised;     /* and was it refined afterwards */
-    sl_distortion distortion;   /* of the map given back */
+    sl_flatten_method method; /* where the map came from */
+    bool stretch_minimised;   /* and was it refined afterwards */
+    sl_distortion distortion; /* of the map given back */
     sl_certificate certificate;
     sl_abf_info abf;
     sl_stretch_info stretch;
@@ -53,7 +54,8 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
 /* uv: nv x 2, scaled to the patch's 3D area, holds the best map found whatever the verdict (all zero when none). An
  * invalid chart is an outcome, not an error. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
  * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch.
- * A single-facet patch is exempt from the stretch bound. Charts with 3D-degenerate triangles are judged without them for stretch. */
+ * A single-facet patch is exempt from the stretch bound. Charts with 3D-degenerate triangles are judged without them
+ * for stretch. */
 SL_NODISCARD sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context,
                                   double *uv, sl_flatten_result *result);
 

@@ -11,13 +11,13 @@
 #include "mesh/patch.h"
 
 typedef struct sl_stretch_def {
-    double w;                /* energy weight in [0, 1]; default 0 */
-    int32_t max_iterations;  /* projected Newton steps; default 60 */
+    double w;                 /* energy weight in [0, 1]; default 0 */
+    int32_t max_iterations;   /* projected Newton steps; default 60 */
     double relative_decrease; /* stop when a step lowers the energy by less than this share; default 1e-4 */
-    double target_l2;        /* stop as soon as the L2 stretch is at most this; 0 = never; default 0 */
-    double hopeless_l2;      /* give up after `hopeless_after` steps when L2 is still above this; 0 = never; default 0 */
-    int32_t hopeless_after;  /* default 15 */
-    bool simple_border;      /* refuse steps that make the border cross itself; needs a simple start; default false */
+    double target_l2;         /* stop as soon as the L2 stretch is at most this; 0 = never; default 0 */
+    double hopeless_l2;     /* give up after `hopeless_after` steps when L2 is still above this; 0 = never; default 0 */
+    int32_t hopeless_after; /* default 15 */
+    bool simple_border;     /* refuse steps that make the border cross itself; needs a simple start; default false */
 } sl_stretch_def;
 
 sl_stretch_def sl_stretch_default(void);
@@ -37,8 +37,8 @@ typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor;
 SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def,
                                          sl_stretch **out);
 
-/* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of the
- * first flip (Smith and Schaefer 2015), Armijo. Stays flip-free. SL_CANCELLED. Allocates nothing. */
+/* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of
+ * the first flip (Smith and Schaefer 2015), Armijo. Stays flip-free. SL_CANCELLED. Allocates nothing. */
 SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_context *context);
 
 const sl_stretch_info *sl_stretch_info_of(const sl_stretch *solver);

@@ -19,59 +19,59 @@ typedef enum sl_pairing { SL_PAIR_AUTO, SL_PAIR_ON, SL_PAIR_OFF } sl_pairing;
 
 typedef struct sl_segment_def {
     sl_cut_rule rule;
-    int32_t vectors;       /* eigenvectors computed a cut; default 30 */
-    sl_pairing pairing;    /* triangles back into quads in the facet graph; default auto */
-    int32_t smooth;        /* dual rings of the band minimum cut, 0 = off; default 2 */
-    bool join;             /* genus-0 charts with several borders: loops joined by shortest paths; default true */
-    bool sew;              /* merge neighbours while they stay valid; default true */
-    double sew_stretch;    /* L2 bound of a merged chart; default 1.25 */
-    bool protect_first;    /* never sew the first cut's seam; default true */
-    int32_t max_charts;    /* cap; reaching it stops splitting and is reported; default 100000 */
+    int32_t vectors;    /* eigenvectors computed a cut; default 30 */
+    sl_pairing pairing; /* triangles back into quads in the facet graph; default auto */
+    int32_t smooth;     /* dual rings of the band minimum cut, 0 = off; default 2 */
+    bool join;          /* genus-0 charts with several borders: loops joined by shortest paths; default true */
+    bool sew;           /* merge neighbours while they stay valid; default true */
+    double sew_stretch; /* L2 bound of a merged chart; default 1.25 */
+    bool protect_first; /* never sew the first cut's seam; default true */
+    int32_t max_charts; /* cap; reaching it stops splitting and is reported; default 100000 */
     sl_flatten_def flatten;
 } sl_segment_def;
 
 sl_segment_def sl_segment_default(void);
 
-/* The paper as printed: longest seam, no pairing, smoothing, joining or sewing, unweighted energy, no Tutte and no stretch
- * minimisation; the stretch bound is the one addition. */
+/* The paper as printed: longest seam, no pairing, smoothing, joining or sewing, unweighted energy, no Tutte and no
+ * stretch minimisation; the stretch bound is the one addition. */
 sl_segment_def sl_segment_paper(void);
 
 typedef struct sl_chart {
-    int32_t first, count;     /* its facets: sl_segmentation.face[first .. first + count - 1], ascending */
+    int32_t first, count; /* its facets: sl_segmentation.face[first .. first + count - 1], ascending */
     sl_topology topology;
     sl_flatten_result flat;
-    bool capped;              /* left as it is because max_charts was reached or it cannot be split */
+    bool capped; /* left as it is because max_charts was reached or it cannot be split */
 } sl_chart;
 
 /* One split of the recursion, in the order taken. */
 typedef struct sl_split {
     int32_t depth;
-    int32_t facets;       /* size of the chart split */
-    int32_t vector;       /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used */
+    int32_t facets; /* size of the chart split */
+    int32_t vector; /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used */
     double lambda;
-    int32_t candidates;   /* vectors that passed the filter */
-    int32_t parts;        /* charts made */
-    double length;        /* seam length, normalised mesh */
+    int32_t candidates; /* vectors that passed the filter */
+    int32_t parts;      /* charts made */
+    double length;      /* seam length, normalised mesh */
     bool smoothed;
     sl_flatten_verdict because; /* why the chart had to be split */
 } sl_split;
 
 typedef struct sl_segmentation {
     int32_t nchart;
-    sl_chart *chart;      /* nchart, numbered by first facet */
-    int32_t *face;        /* nf: facets grouped by chart */
-    int32_t *face_chart;  /* nf: chart of a facet */
-    double *corner_uv;    /* nh x 2: each chart in its own frame, area = 3D area of the normalised mesh */
+    sl_chart *chart;     /* nchart, numbered by first facet */
+    int32_t *face;       /* nf: facets grouped by chart */
+    int32_t *face_chart; /* nf: chart of a facet */
+    double *corner_uv;   /* nh x 2: each chart in its own frame, area = 3D area of the normalised mesh */
     int32_t nsplit;
     sl_split *split;
-    int32_t merges;       /* charts sewn together */
-    bool paired;          /* triangles were paired */
+    int32_t merges; /* charts sewn together */
+    bool paired;    /* triangles were paired */
     double paired_fraction;
 } sl_segmentation;
 
-/* Segments and flattens. The mesh's seams are cut in place (twin to sew pointers); on failure it is as it was. Components
- * and isolated facets become charts of their own; seams already cut stand as borders. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number
- * of threads. */
+/* Segments and flattens. The mesh's seams are cut in place (twin to sew pointers); on failure it is as it was.
+ * Components and isolated facets become charts of their own; seams already cut stand as borders. SL_OUT_OF_MEMORY,
+ * SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_segment(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
                                   const sl_context *context, sl_segmentation **out);
 

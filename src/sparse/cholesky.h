@@ -27,7 +27,8 @@ SL_NODISCARD sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_de
 SL_NODISCARD sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column);
 
 /* X: n x nrhs, column-major, leading dimension n; B on entry, inv(A) B on return. work: sl_cholesky_work_size(F, nrhs)
- * doubles, no meaning on return, one per thread: two threads may solve with one factor. Cannot fail, allocates nothing. */
+ * doubles, no meaning on return, one per thread: two threads may solve with one factor. Cannot fail, allocates nothing.
+ */
 void sl_cholesky_solve(const sl_cholesky *F, double *X, int32_t nrhs, double *work);
 int64_t sl_cholesky_work_size(const sl_cholesky *F, int32_t nrhs);
 

@@ -9,12 +9,13 @@
 typedef enum sl_ordering {
     SL_ORDER_NATURAL,
     SL_ORDER_CAMD,             /* constrained approximate minimum degree of the whole */
-    SL_ORDER_NESTED_DISSECTION /* separators from coordinates (or from the graph when there are none), CAMD in the leaves */
+    SL_ORDER_NESTED_DISSECTION /* separators from coordinates (or from the graph when there are none), CAMD in the
+                                  leaves */
 } sl_ordering;
 
-/* perm[k] = row of A eliminated k-th; length n. A: lower triangle (pattern only). xyz: n x 3, a point per unknown, or NULL.
- * SL_BAD_INPUT, SL_OUT_OF_MEMORY. Deterministic. O(n log n + nnz) for nested dissection.
- * Source: George 1973; Miller, Teng, Thurston, Vavasis 1997 for geometric separators. */
+/* perm[k] = row of A eliminated k-th; length n. A: lower triangle (pattern only). xyz: n x 3, a point per unknown, or
+ * NULL. SL_BAD_INPUT, SL_OUT_OF_MEMORY. Deterministic. O(n log n + nnz) for nested dissection. Source: George 1973;
+ * Miller, Teng, Thurston, Vavasis 1997 for geometric separators. */
 SL_NODISCARD sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int32_t *perm);
 
 #endif

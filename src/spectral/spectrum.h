@@ -7,20 +7,20 @@
 #include "eigen/lanczos.h"
 #include "mesh/facet_graph.h"
 
-/* Lower triangle of D - A of a graph (the paper's L = A - D with its sign turned, errata 2); parallel edges count as often
- * as they occur. SL_OUT_OF_MEMORY. */
+/* Lower triangle of D - A of a graph (the paper's L = A - D with its sign turned, errata 2); parallel edges count as
+ * often as they occur. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_laplacian_create(const sl_graph *graph, sl_csc **out);
 
 typedef struct sl_spectrum {
-    int32_t n, count;    /* nodes; pairs */
-    double *lambda;      /* count, ascending, the first is 0 */
-    double *vectors;     /* n x count, column-major */
-    double *residual;    /* count */
+    int32_t n, count; /* nodes; pairs */
+    double *lambda;   /* count, ascending, the first is 0 */
+    double *vectors;  /* n x count, column-major */
+    double *residual; /* count */
     sl_lanczos_info info;
 } sl_spectrum;
 
-/* The `count` smallest pairs of a facet graph's Laplacian (clipped to n). Indicators of components are deflated as known
- * null space. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
+/* The `count` smallest pairs of a facet graph's Laplacian (clipped to n). Indicators of components are deflated as
+ * known null space. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
 SL_NODISCARD sl_status sl_spectrum_compute(const sl_facet_graph *graph, int32_t count, const sl_context *context,
                                            sl_spectrum **out);
 void sl_spectrum_free(sl_spectrum *spectrum); /* NULL is a no-op */
@@ -41,8 +41,8 @@ void sl_spectrum_side(const sl_spectrum *spectrum, int32_t vector, uint8_t *side
 SL_NODISCARD sl_status sl_cut_candidates(const sl_mesh *mesh, const sl_facet_graph *graph, const sl_spectrum *spectrum,
                                          sl_cut_candidate *candidates);
 
-/* Shortens a cut: a minimum cut with edge-length capacities in the band of nodes within `rings` dual rings of it. Kept only
- * if both sides stay connected; *changed says whether it was. side: n, in and out. rings 0 = no-op.
+/* Shortens a cut: a minimum cut with edge-length capacities in the band of nodes within `rings` dual rings of it. Kept
+ * only if both sides stay connected; *changed says whether it was. side: n, in and out. rings 0 = no-op.
  * SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, int32_t rings, uint8_t *side,
                                      bool *changed);
