@@ -1,0 +1,236 @@
+#include "atlas/atlas.h"
+
+#include "atlas/atlas_internal.h"
+#include "base/memory.h"
+#include "meshio/meshfile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+sl_atlas_def sl_atlas_default(void)
+{
+    return (sl_atlas_def){
+        .segment = sl_segment_default(),
+        .pack = sl_pack_default(),
+        .seams = SL_SEAMS_AUTOMATIC,
+        .check_resolution = 4096,
+    };
+}
+
+/* Charts as the packer wants them: UVs by corner, triangles by position in the chart. */
+typedef struct pack_input {
+    sl_pack_chart *chart; /* nchart, into the arrays below */
+    double *uv;           /* 2 nh */
+    int32_t *tri;         /* 3 nt */
+} pack_input;
+
+static void pack_input_clear(pack_input *input)
+{
+    sl_free(input->chart);
+    sl_free(input->uv);
+    sl_free(input->tri);
+}
+
+static sl_status pack_input_init(const sl_atlas *atlas, pack_input *input)
+{
+    const sl_mesh *mesh = atlas->mesh;
+    const sl_segmentation *seg = atlas->segmentation;
+    input->chart = sl_calloc(seg->nchart, sizeof *input->chart);
+    input->uv = sl_alloc(mesh->nh, 2 * sizeof *input->uv);
+    input->tri = sl_alloc(atlas->triangulation->nt, 3 * sizeof *input->tri);
+    if (input->chart == NULL || input->uv == NULL || input->tri == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    int64_t corners = 0, triangles = 0;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        sl_pack_chart *chart = &input->chart[c];
+        chart->uv = input->uv + 2 * corners;
+        chart->tri = input->tri + 3 * triangles;
+        for (int32_t i = seg->chart[c].first; i < seg->chart[c].first + seg->chart[c].count; i++) {
+            const int32_t f = seg->face[i], first = mesh->face_first[f], degree = sl_degree(mesh, f);
+            memcpy(input->uv + 2 * corners, seg->corner_uv + 2 * (int64_t)first,
+                   2 * (size_t)degree * sizeof *input->uv);
+            for (int32_t k = 3 * atlas->triangulation->first[f]; k < 3 * atlas->triangulation->first[f + 1]; k++) {
+                input->tri[3 * triangles + (k - 3 * atlas->triangulation->first[f])] =
+                    chart->nv + atlas->triangulation->corner[k] - first;
+            }
+            triangles += atlas->triangulation->first[f + 1] - atlas->triangulation->first[f];
+            chart->nt += atlas->triangulation->first[f + 1] - atlas->triangulation->first[f];
+            chart->nv += degree;
+            corners += degree;
+        }
+    }
+    return SL_OK;
+}
+
+/* Places the charts on the page and writes their UVs as files hold them. */
+static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
+{
+    const sl_mesh *mesh = atlas->mesh;
+    const sl_segmentation *seg = atlas->segmentation;
+    pack_input input = {0};
+    sl_status status = SL_OK;
+    atlas->placement = sl_calloc(seg->nchart, sizeof *atlas->placement);
+    atlas->corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->corner_uv);
+    atlas->input_corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->input_corner_uv);
+    if (atlas->placement == NULL || atlas->corner_uv == NULL || atlas->input_corner_uv == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    SL_TRY(pack_input_init(atlas, &input));
+    SL_TRY(sl_pack(seg->nchart, input.chart, &def->pack, context, atlas->placement, &atlas->pack));
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        const sl_placement *p = &atlas->placement[seg->face_chart[mesh->face[h]]];
+        const double *uv = seg->corner_uv + 2 * (int64_t)h;
+        const double c = cos(p->angle), s = sin(p->angle);
+        double *out = atlas->corner_uv + 2 * (int64_t)h;
+        out[0] = sl_uv_quantise(atlas->pack.scale * (c * uv[0] - s * uv[1]) + p->offset[0]);
+        out[1] = sl_uv_quantise(atlas->pack.scale * (s * uv[0] + c * uv[1]) + p->offset[1]);
+        memcpy(atlas->input_corner_uv + 2 * (int64_t)sl_input_corner(mesh, h), out, 2 * sizeof *out);
+    }
+cleanup:
+    pack_input_clear(&input);
+    return status;
+}
+
+static sl_warning *push_warning(sl_atlas *atlas, int32_t chart)
+{
+    sl_warning *grown = sl_realloc(atlas->warning, (int64_t)atlas->nwarning + 1, sizeof *grown);
+    if (grown == NULL) {
+        return NULL;
+    }
+    atlas->warning = grown;
+    grown[atlas->nwarning].chart = chart;
+    return &grown[atlas->nwarning++];
+}
+
+/* A chart that is not what was asked for is named. */
+static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        const sl_chart *chart = &seg->chart[c];
+        if (chart->flat.verdict == SL_CHART_VALID) {
+            continue;
+        }
+        sl_warning *w = push_warning(atlas, c);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        if (chart->flat.verdict == SL_CHART_STRETCHED) {
+            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): stretch L2 %.4g is above the bound %.4g",
+                     c, chart->count, seg->face[chart->first], chart->flat.distortion.l2,
+                     def->segment.flatten.max_stretch);
+        } else {
+            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): %s", c, chart->count,
+                     seg->face[chart->first], sl_flatten_verdict_name(chart->flat.verdict));
+        }
+    }
+    if (atlas->repair.degenerate_faces > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text, "%d facets without area get one texel each", atlas->repair.degenerate_faces);
+    }
+    return SL_OK;
+}
+
+/* Charts of the user's own seams must be disks: nothing else can be flattened. */
+static sl_status require_disks(const sl_atlas *atlas, sl_diag *diag)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        const sl_chart *chart = &seg->chart[c];
+        if (chart->flat.verdict == SL_CHART_NOT_A_DISK) {
+            sl_diag_reason(diag,
+                           "the seams leave a chart of %d facets (the first is facet %d) with genus %d and %d borders",
+                           chart->count, seg->face[chart->first] + 1, chart->topology.genus, chart->topology.loops);
+            sl_diag_hint(diag, "add seams until it can be laid flat, or let seamlab cut");
+            if (diag != NULL) {
+                diag->element = c;
+            }
+            return SL_INFEASIBLE;
+        }
+    }
+    return SL_OK;
+}
+
+sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context, sl_atlas **out,
+                    sl_diag *diag)
+{
+    *out = NULL;
+    sl_atlas *atlas = sl_calloc(1, sizeof *atlas);
+    sl_status status = atlas != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+    SL_TRY(status);
+    SL_TRY(sl_mesh_build(polygons, &atlas->mesh, &atlas->repair, diag));
+    SL_TRY(sl_triangulation_create(atlas->mesh, &atlas->triangulation));
+    if (def->seams == SL_SEAMS_AUTOMATIC) {
+        SL_TRY(sl_segment(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));
+    } else {
+        SL_TRY(sl_seams_cut(atlas->mesh, def->seams, &def->seam_input, diag));
+        SL_TRY(sl_flatten_charts(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));
+        SL_TRY(require_disks(atlas, diag));
+    }
+    status = pack_charts(atlas, def, context);
+    if (status == SL_INFEASIBLE) {
+        sl_diag_reason(diag, "%d charts and their margins do not fit into %d x %d texels", atlas->segmentation->nchart,
+                       def->pack.resolution, def->pack.resolution);
+        sl_diag_hint(diag, "raise --resolution or lower --margin");
+    }
+    SL_TRY(status);
+    SL_TRY(sl_atlas_verify(atlas, def, context));
+    SL_TRY(warn_of_charts(atlas, def));
+    *out = atlas;
+    return SL_OK;
+cleanup:
+    sl_atlas_free(atlas);
+    return status;
+}
+
+void sl_atlas_free(sl_atlas *atlas)
+{
+    if (atlas == NULL) {
+        return;
+    }
+    sl_mesh_free(atlas->mesh);
+    sl_triangulation_free(atlas->triangulation);
+    sl_repair_report_clear(&atlas->repair);
+    sl_segmentation_free(atlas->segmentation);
+    sl_free(atlas->corner_uv);
+    sl_free(atlas->input_corner_uv);
+    sl_free(atlas->placement);
+    sl_free(atlas->warning);
+    sl_free(atlas);
+}
+
+sl_status sl_atlas_seams(const sl_mesh *mesh, int32_t **halfedge, int32_t *count)
+{
+    int32_t n = 0;
+    *halfedge = NULL;
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        n += mesh->sew[h] > h;
+    }
+    int32_t *list = sl_alloc(n, sizeof *list);
+    if (list == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    *count = 0;
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        if (mesh->sew[h] > h) {
+            list[(*count)++] = h;
+        }
+    }
+    *halfedge = list;
+    return SL_OK;
+}
+
+double sl_atlas_seam_length(const sl_mesh *mesh)
+{
+    double length = 0.0;
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        length += mesh->sew[h] > h ? sl_mesh_edge_length(mesh, h) : 0.0;
+    }
+    return length;
+}

@@ -1,0 +1,12 @@
+/* Shared by the files of this room.
+ * Layer: atlas. */
+#ifndef SL_ATLAS_ATLAS_INTERNAL_H
+#define SL_ATLAS_ATLAS_INTERNAL_H
+
+#include "atlas/atlas.h"
+
+/* Judges atlas->corner_uv, as it will be written, and fills atlas->check: each chart's certificate by exact predicates,
+ * then texel counts over the whole page. SL_OUT_OF_MEMORY, SL_BAD_INPUT (a UV is not finite). */
+SL_NODISCARD sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context);
+
+#endif

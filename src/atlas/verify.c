@@ -1,0 +1,119 @@
+#include "atlas/atlas_internal.h"
+
+#include "base/memory.h"
+#include "overlap/certificate.h"
+#include "overlap/coverage.h"
+
+/* One chart's certificate, or why there is none. */
+typedef struct chart_verdict {
+    sl_status status;
+    sl_certificate certificate;
+} chart_verdict;
+
+typedef struct verify_job {
+    const sl_atlas *atlas;
+    chart_verdict *verdict;
+} verify_job;
+
+/* Border halfedges of the patch as vertex pairs. *pair is owned by the caller. */
+static sl_status border_pairs(const sl_patch *patch, int32_t **pair, int32_t *count)
+{
+    int32_t n = 0;
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        n += patch->twin[c] < 0;
+    }
+    *pair = sl_alloc(n, 2 * sizeof **pair);
+    if (*pair == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    *count = 0;
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        if (patch->twin[c] < 0) {
+            (*pair)[2 * *count] = patch->tri[c];
+            (*pair)[2 * *count + 1] = patch->tri[sl_corner_next(c)];
+            (*count)++;
+        }
+    }
+    return SL_OK;
+}
+
+static sl_status certify_chart(const sl_atlas *atlas, int32_t c, sl_certificate *out)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    const sl_chart *chart = &seg->chart[c];
+    sl_patch *patch = NULL;
+    double *uv = NULL;
+    int32_t *border = NULL, border_count = 0;
+    sl_status status = SL_OK;
+    if (chart->count == 1 && (atlas->mesh->face_flags[seg->face[chart->first]] & SL_FACE_DEGENERATE) != 0) {
+        *out = (sl_certificate){.embedded = true, .first_edge = {-1, -1}}; /* no area, nothing to overlap */
+        return SL_OK;
+    }
+    SL_TRY(sl_patch_extract(atlas->mesh, atlas->triangulation, seg->face + chart->first, chart->count, &patch));
+    uv = sl_alloc(patch->nv, 2 * sizeof *uv);
+    if (uv == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    for (int32_t k = 0; k < 3 * patch->nt; k++) {
+        uv[2 * (int64_t)patch->tri[k]] = atlas->corner_uv[2 * (int64_t)patch->corner[k]];
+        uv[2 * (int64_t)patch->tri[k] + 1] = atlas->corner_uv[2 * (int64_t)patch->corner[k] + 1];
+    }
+    SL_TRY(border_pairs(patch, &border, &border_count));
+    SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, border_count, border, out));
+    out->embedded = out->embedded && sl_patch_is_disk(patch);
+cleanup:
+    sl_patch_free(patch);
+    sl_free(uv);
+    sl_free(border);
+    return status;
+}
+
+static void certify_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const verify_job *job = user;
+    for (int64_t c = begin; c < end; c++) {
+        job->verdict[c].status = certify_chart(job->atlas, (int32_t)c, &job->verdict[c].certificate);
+    }
+}
+
+/* Texels of the whole page hit more than once. */
+static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
+{
+    sl_coverage *coverage = NULL;
+    sl_status status = sl_coverage_create(atlas->check.resolution, atlas->check.resolution, &coverage);
+    if (status == SL_OK) {
+        status = sl_coverage_add(coverage, atlas->corner_uv, atlas->triangulation->nt, atlas->triangulation->corner,
+                                 context);
+    }
+    if (status == SL_OK) {
+        atlas->check.covered_texels = sl_coverage_covered(coverage);
+        atlas->check.overlapping_texels = sl_coverage_overlapping(coverage);
+    }
+    sl_coverage_free(coverage);
+    return status;
+}
+
+sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
+{
+    const int32_t n = atlas->segmentation->nchart;
+    sl_atlas_check *check = &atlas->check;
+    *check = (sl_atlas_check){.resolution = def->check_resolution};
+    verify_job job = {atlas, sl_calloc(n, sizeof(chart_verdict))};
+    sl_status status = job.verdict != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+    SL_TRY(status);
+    sl_parallel_for(context, n, 1, certify_chunk, &job);
+    for (int32_t c = 0; c < n; c++) {
+        SL_TRY(job.verdict[c].status);
+        check->flipped += job.verdict[c].certificate.flipped;
+        check->degenerate += job.verdict[c].certificate.degenerate;
+        check->uncertified_charts += !job.verdict[c].certificate.embedded;
+    }
+    SL_TRY(count_texels(atlas, context));
+    check->passed = check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
+                    check->overlapping_texels == 0;
+cleanup:
+    sl_free(job.verdict);
+    return status;
+}
