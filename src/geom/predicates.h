@@ -5,9 +5,10 @@
 
 #include "base/status.h"
 
-/* Sign of twice the signed area of triangle a b c: +1 counter-clockwise, -1 clockwise, 0 exactly collinear. Exact for all
- * finite doubles whose products neither overflow nor underflow (|x| in {0} or [2^-500, 2^500]).
- * Source: Shewchuk 1997, "Adaptive precision floating-point arithmetic"; filter, then exact expansions. */
+/* Sign of twice the signed area of triangle a b c: +1 counter-clockwise, -1 clockwise, 0 exactly collinear. Exact for
+ * all finite doubles whose nonzero x span less than a factor of 2^900, and likewise the nonzero y: denormals and 1e300
+ * are fine, both at once are not. Not defined for NaN and infinities. Source: Shewchuk 1997, "Adaptive precision
+ * floating-point arithmetic"; filter, then exact expansions. */
 int sl_orient2d(const double a[2], const double b[2], const double c[2]);
 
 /* How two closed segments ab and cd meet. */
@@ -18,7 +19,7 @@ typedef enum sl_crossing {
     SL_CROSS_OVERLAP /* collinear with more than one common point */
 } sl_crossing;
 
-/* Exact, by sl_orient2d. */
+/* Exact, by sl_orient2d. A segment may be a single point; where two points meet that is SL_CROSS_TOUCH. */
 sl_crossing sl_segments_cross(const double a[2], const double b[2], const double c[2], const double d[2]);
 
 #endif
