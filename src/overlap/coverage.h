@@ -13,6 +13,7 @@ typedef struct sl_coverage {
     uint16_t *count; /* width * height, row-major, saturating at 65535 */
 } sl_coverage;
 
+/* width, height: 1 to 2^15, else SL_BAD_INPUT. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_coverage_create(int32_t width, int32_t height, sl_coverage **out); /* zeroed */
 void sl_coverage_free(sl_coverage *coverage);                                                /* NULL is a no-op */
 
