@@ -10,7 +10,7 @@
 typedef struct sl_cholesky sl_cholesky; /* opaque: owns P, the symbolic analysis and L */
 
 typedef struct sl_cholesky_def {
-    sl_ordering ordering; /* default SL_ORDER_NESTED_DISSECTION when xyz is given, else SL_ORDER_CAMD */
+    sl_ordering ordering; /* default SL_ORDER_AUTO */
     const double *xyz;    /* n x 3, a point per unknown for geometric dissection; borrowed; default NULL */
     const int32_t *perm;  /* length n, an ordering to inherit; borrowed; default NULL = computed */
     double pivot_rtol;    /* reject pivot d_k <= pivot_rtol * max|a_ii|; unitless; default 0 */

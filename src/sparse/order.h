@@ -7,6 +7,7 @@
 #include "sparse/csc.h"
 
 typedef enum sl_ordering {
+    SL_ORDER_AUTO, /* nested dissection when points are given, CAMD of the whole otherwise */
     SL_ORDER_NATURAL,
     SL_ORDER_CAMD,             /* constrained approximate minimum degree of the whole */
     SL_ORDER_NESTED_DISSECTION /* separators from coordinates (or from the graph when there are none), CAMD in the

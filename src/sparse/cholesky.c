@@ -1,0 +1,294 @@
+#include "sparse/cholesky.h"
+
+#include "base/memory.h"
+#include "sparse/cholesky_internal.h"
+#include "sparse/elimination.h"
+#include "sparse/supernode.h"
+
+#include <string.h>
+
+sl_cholesky_def sl_cholesky_default(void)
+{
+    return (sl_cholesky_def){.ordering = SL_ORDER_AUTO};
+}
+
+/* What analysis needs and factorisation does not. */
+typedef struct scratch {
+    int32_t *place; /* inverse of F->perm */
+    sl_half half;
+    int64_t *next;
+    int32_t *parent, *post, *count;
+    int32_t *work; /* 4 n */
+    sl_partition partition;
+} scratch;
+
+static void scratch_clear(scratch *w)
+{
+    sl_free(w->place);
+    sl_free(w->half.first);
+    sl_free(w->half.index);
+    sl_free(w->next);
+    sl_free(w->parent);
+    sl_free(w->post);
+    sl_free(w->count);
+    sl_free(w->work);
+    sl_partition_clear(&w->partition);
+}
+
+static sl_status scratch_init(const sl_csc *A, scratch *w)
+{
+    const int64_t n = A->ncols;
+    w->place = sl_alloc(n, sizeof *w->place);
+    w->half.first = sl_alloc(n + 1, sizeof *w->half.first);
+    w->half.index = sl_alloc(A->colptr[n] - n, sizeof *w->half.index);
+    w->next = sl_alloc(n, sizeof *w->next);
+    w->parent = sl_alloc(n, sizeof *w->parent);
+    w->post = sl_alloc(n, sizeof *w->post);
+    w->count = sl_alloc(n, sizeof *w->count);
+    w->work = sl_alloc(4 * n, sizeof *w->work);
+    const bool ok = w->place != NULL && w->half.first != NULL && w->half.index != NULL && w->next != NULL &&
+                    w->parent != NULL && w->post != NULL && w->count != NULL && w->work != NULL;
+    return ok ? SL_OK : SL_OUT_OF_MEMORY;
+}
+
+/* place = inverse of perm; false when perm is no permutation. */
+static bool invert(int32_t n, const int32_t *perm, int32_t *place)
+{
+    memset(place, -1, (size_t)n * sizeof *place);
+    for (int32_t k = 0; k < n; k++) {
+        if (perm[k] < 0 || perm[k] >= n || place[perm[k]] != -1) {
+            return false;
+        }
+        place[perm[k]] = k;
+    }
+    return true;
+}
+
+static sl_status find_permutation(const sl_csc *A, const sl_cholesky_def *def, int32_t *perm)
+{
+    if (def->perm != NULL) {
+        memcpy(perm, def->perm, (size_t)A->ncols * sizeof *perm);
+        return SL_OK;
+    }
+    return sl_order(A, def->ordering, def->xyz, perm);
+}
+
+/* perm = perm after order; place follows. spare: n. */
+static void compose(sl_cholesky *F, const int32_t *order, int32_t *place, int32_t *spare)
+{
+    memcpy(spare, F->perm, (size_t)F->n * sizeof *spare);
+    for (int32_t k = 0; k < F->n; k++) {
+        F->perm[k] = spare[order[k]];
+        place[F->perm[k]] = k;
+    }
+}
+
+/* The elimination tree, its postorder put into perm, and the column counts. */
+static void analyze_columns(sl_cholesky *F, const sl_csc *A, scratch *w)
+{
+    const int32_t n = F->n;
+    sl_half_upper(A, w->place, w->next, &w->half);
+    sl_elimination_tree(n, &w->half, w->parent, w->work);
+    sl_postorder(n, w->parent, w->post, w->work);
+    int32_t *rank = w->work, *tree = w->count;
+    memcpy(tree, w->parent, (size_t)n * sizeof *tree);
+    for (int32_t k = 0; k < n; k++) {
+        rank[w->post[k]] = k;
+    }
+    for (int32_t k = 0; k < n; k++) {
+        const int32_t up = tree[w->post[k]];
+        w->parent[k] = up != -1 ? rank[up] : -1;
+    }
+    compose(F, w->post, w->place, w->work);
+    sl_half_lower(A, w->place, w->next, &w->half);
+    sl_column_counts(n, &w->half, w->parent, w->count, w->work);
+}
+
+/* Takes the supernodes over from the partition, and its column order into perm. */
+static sl_status adopt_partition(sl_cholesky *F, scratch *w)
+{
+    sl_partition *part = &w->partition;
+    F->supernodes = part->count;
+    F->first = part->first;
+    F->parent = part->parent;
+    part->first = part->parent = NULL;
+    compose(F, part->order, w->place, w->work);
+    F->below_first = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->below_first);
+    F->panel = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->panel);
+    F->child = sl_alloc(F->supernodes, sizeof *F->child);
+    F->sibling = sl_alloc(F->supernodes, sizeof *F->sibling);
+    if (F->below_first == NULL || F->panel == NULL || F->child == NULL || F->sibling == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    F->below_first[0] = F->panel[0] = 0;
+    memset(F->child, -1, (size_t)F->supernodes * sizeof *F->child);
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        const int64_t width = sl_supernode_width(F, s), below = part->below[s];
+        F->below_first[s + 1] = F->below_first[s] + below;
+        F->panel[s + 1] = F->panel[s] + width * (width + below);
+        F->max_below = below > F->max_below ? (int32_t)below : F->max_below;
+        F->sibling[s] = -1;
+        if (F->parent[s] != -1) {
+            F->sibling[s] = F->child[F->parent[s]];
+            F->child[F->parent[s]] = s;
+        }
+    }
+    return SL_OK;
+}
+
+/* Row i stands below every supernode on the way from its entries in A up to its own: each list comes out sorted. */
+static void list_rows_below(sl_cholesky *F, const sl_half *upper, int64_t *next, int32_t *mark, int32_t *owner)
+{
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        next[s] = F->below_first[s];
+        mark[s] = -1;
+        for (int32_t k = F->first[s]; k < F->first[s + 1]; k++) {
+            owner[k] = s;
+        }
+    }
+    for (int32_t i = 0; i < F->n; i++) {
+        for (int64_t p = upper->first[i]; p < upper->first[i + 1]; p++) {
+            for (int32_t s = owner[upper->index[p]]; s != owner[i] && mark[s] != i; s = F->parent[s]) {
+                F->below[next[s]++] = i;
+                mark[s] = i;
+            }
+        }
+    }
+}
+
+/* Number of row i within the panel of s. */
+static int32_t local_row(const sl_cholesky *F, int32_t s, int32_t i)
+{
+    if (i < F->first[s + 1]) {
+        return i - F->first[s];
+    }
+    int64_t lo = F->below_first[s], hi = F->below_first[s + 1] - 1;
+    while (lo < hi) {
+        const int64_t middle = lo + (hi - lo) / 2;
+        if (F->below[middle] < i) {
+            lo = middle + 1;
+        } else {
+            hi = middle;
+        }
+    }
+    SL_ASSERT(F->below[lo] == i);
+    return sl_supernode_width(F, s) + (int32_t)(lo - F->below_first[s]);
+}
+
+static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, const int32_t *owner)
+{
+    for (int32_t j = 0; j < F->n; j++) {
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            const int32_t a = place[j], b = place[A->row[p]];
+            const int32_t column = a < b ? a : b, row = a < b ? b : a;
+            const int32_t s = owner[column];
+            const int64_t height = sl_supernode_width(F, s) + sl_supernode_below(F, s);
+            F->target[p] = F->panel[s] + (column - F->first[s]) * height + local_row(F, s, row);
+        }
+    }
+}
+
+/* Doubles on the stack of update matrices at its highest, when a supernode's own lies above its children's. */
+static int64_t deepest_updates(const sl_cholesky *F)
+{
+    int64_t top = 0, deepest = 0;
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        const int64_t own = (int64_t)sl_supernode_below(F, s) * sl_supernode_below(F, s);
+        deepest = top + own > deepest ? top + own : deepest;
+        for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
+            top -= (int64_t)sl_supernode_below(F, c) * sl_supernode_below(F, c);
+        }
+        top += own;
+    }
+    return deepest;
+}
+
+static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
+{
+    F->below = sl_alloc(F->below_first[F->supernodes], sizeof *F->below);
+    F->target = sl_alloc(F->pattern_nnz, sizeof *F->target);
+    F->L = sl_alloc(F->panel[F->supernodes], sizeof *F->L);
+    F->relative = sl_alloc(F->max_below, sizeof *F->relative);
+    F->local = sl_alloc(F->n, sizeof *F->local);
+    F->updates = sl_alloc(deepest_updates(F), sizeof *F->updates);
+    if (F->below == NULL || F->target == NULL || F->L == NULL || F->relative == NULL || F->local == NULL ||
+        F->updates == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    int32_t *owner = w->count, *mark = w->work;
+    sl_half_upper(A, w->place, w->next, &w->half);
+    list_rows_below(F, &w->half, w->next, mark, owner);
+    map_entries(F, A, w->place, owner);
+    return SL_OK;
+}
+
+sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_cholesky **out)
+{
+    const sl_cholesky_def defaults = sl_cholesky_default();
+    scratch w = {0};
+    sl_cholesky *F = NULL;
+    sl_status status = SL_OK;
+    *out = NULL;
+    def = def != NULL ? def : &defaults;
+    SL_TRY(sl_csc_check_pattern(A, true));
+    F = sl_calloc(1, sizeof *F);
+    if (F == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    F->n = A->ncols;
+    F->pattern_nnz = A->colptr[A->ncols];
+    F->pivot_rtol = def->pivot_rtol;
+    F->perm = sl_alloc(F->n, sizeof *F->perm);
+    SL_TRY(F->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(scratch_init(A, &w));
+    SL_TRY(find_permutation(A, def, F->perm));
+    SL_TRY(invert(F->n, F->perm, w.place) ? SL_OK : SL_BAD_INPUT);
+    analyze_columns(F, A, &w);
+    SL_TRY(sl_partition_create(F->n, w.parent, w.count, &w.partition));
+    SL_TRY(adopt_partition(F, &w));
+    SL_TRY(analyze_rows(F, A, &w));
+    *out = F;
+cleanup:
+    scratch_clear(&w);
+    if (status != SL_OK) {
+        sl_cholesky_free(F);
+    }
+    return status;
+}
+
+int64_t sl_cholesky_nnz(const sl_cholesky *F)
+{
+    int64_t sum = 0;
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        const int64_t width = sl_supernode_width(F, s);
+        sum += width * (width + 1) / 2 + width * sl_supernode_below(F, s);
+    }
+    return sum;
+}
+
+const int32_t *sl_cholesky_permutation(const sl_cholesky *F)
+{
+    return F->perm;
+}
+
+void sl_cholesky_free(sl_cholesky *F)
+{
+    if (F == NULL) {
+        return;
+    }
+    sl_free(F->perm);
+    sl_free(F->first);
+    sl_free(F->parent);
+    sl_free(F->below_first);
+    sl_free(F->below);
+    sl_free(F->panel);
+    sl_free(F->L);
+    sl_free(F->target);
+    sl_free(F->updates);
+    sl_free(F->relative);
+    sl_free(F->local);
+    sl_free(F->child);
+    sl_free(F->sibling);
+    sl_free(F);
+}

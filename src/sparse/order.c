@@ -1,0 +1,109 @@
+#include "sparse/order.h"
+
+#include "base/memory.h"
+#include "sparse/dissection.h"
+
+#include <math.h>
+#include <suitesparse/camd.h>
+
+/* Both triangles of A's pattern without the diagonal. */
+static sl_status adjacency_of(const sl_csc *A, sl_adjacency *graph)
+{
+    const int32_t n = A->ncols;
+    int64_t *next = NULL;
+    sl_status status = SL_OK;
+    *graph = (sl_adjacency){.n = n};
+    graph->first = sl_calloc((int64_t)n + 1, sizeof *graph->first);
+    graph->adj = sl_alloc(2 * (A->colptr[n] - n), sizeof *graph->adj);
+    if (graph->first == NULL || graph->adj == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    for (int32_t j = 0; j < n; j++) {
+        for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
+            graph->first[j + 1]++;
+            graph->first[A->row[p] + 1]++;
+        }
+    }
+    for (int32_t i = 0; i < n; i++) {
+        graph->first[i + 1] += graph->first[i];
+    }
+    next = sl_copy(graph->first, n, sizeof *next);
+    if (next == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    for (int32_t j = 0; j < n; j++) {
+        for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
+            graph->adj[next[j]++] = A->row[p];
+            graph->adj[next[A->row[p]]++] = j;
+        }
+    }
+cleanup:
+    sl_free(next);
+    return status;
+}
+
+/* piece: CAMD eliminates smaller numbers first; NULL = no constraint. */
+static sl_status order_by_camd(const sl_adjacency *graph, const int32_t *piece, int32_t *perm)
+{
+    const int32_t n = graph->n;
+    if (graph->first[n] > INT32_MAX) {
+        return SL_OUT_OF_MEMORY; /* CAMD's indices are ints */
+    }
+    int32_t *first = sl_alloc((int64_t)n + 1, sizeof *first);
+    if (first == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t i = 0; i <= n; i++) {
+        first[i] = (int32_t)graph->first[i];
+    }
+    const int outcome = camd_order(n, first, graph->adj, perm, NULL, NULL, piece);
+    sl_free(first);
+    return outcome == CAMD_OUT_OF_MEMORY ? SL_OUT_OF_MEMORY : outcome >= CAMD_OK ? SL_OK : SL_INTERNAL;
+}
+
+static bool all_finite(const double *x, int64_t count)
+{
+    for (int64_t k = 0; k < count; k++) {
+        if (!isfinite(x[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static sl_status order_by_dissection(const sl_adjacency *graph, const double *xyz, int32_t *perm)
+{
+    int32_t *piece = sl_alloc(graph->n, sizeof *piece);
+    sl_status status = piece != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+    SL_TRY(status);
+    SL_TRY(sl_dissect(graph, xyz, piece));
+    SL_TRY(order_by_camd(graph, piece, perm));
+cleanup:
+    sl_free(piece);
+    return status;
+}
+
+sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int32_t *perm)
+{
+    sl_adjacency graph = {0};
+    sl_status status = SL_OK;
+    SL_TRY(sl_csc_check_pattern(A, true));
+    if (xyz != NULL && !all_finite(xyz, 3 * (int64_t)A->ncols)) {
+        status = SL_BAD_INPUT;
+        goto cleanup;
+    }
+    if (ordering == SL_ORDER_NATURAL || A->ncols == 0) {
+        for (int32_t k = 0; k < A->ncols; k++) {
+            perm[k] = k;
+        }
+        goto cleanup;
+    }
+    SL_TRY(adjacency_of(A, &graph));
+    const bool whole = ordering == SL_ORDER_CAMD || (ordering == SL_ORDER_AUTO && xyz == NULL);
+    SL_TRY(whole ? order_by_camd(&graph, NULL, perm) : order_by_dissection(&graph, xyz, perm));
+cleanup:
+    sl_adjacency_clear(&graph);
+    return status;
+}
