@@ -1,0 +1,305 @@
+#include "param/stretch_internal.h"
+
+#include "base/memory.h"
+#include "geom/predicates.h"
+#include "overlap/certificate.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double STEP_SHARE = 0.9; /* of the step to the first flip */
+static const double ARMIJO = 1e-4;
+static const int MAX_HALVINGS = 40; /* of a step: 1e-12 of the first trial */
+
+struct sl_stretch {
+    const sl_patch *patch;
+    sl_stretch_def def;
+    sl_stretch_info info;
+    sl_stretch_rest rest;
+    sl_stretch_system system;
+    double *uv, *trial, *gradient, *direction; /* 2 nv each */
+    int32_t nb;
+    int32_t *border; /* nb vertex pairs; NULL unless simple_border */
+    double energy;
+    bool done;
+};
+
+sl_stretch_def sl_stretch_default(void)
+{
+    return (sl_stretch_def){.w = 0.0, .max_iterations = 60, .relative_decrease = 1e-4, .hopeless_after = 15};
+}
+
+static bool all_positive(const sl_patch *patch, const double *uv)
+{
+    for (int32_t t = 0; t < patch->nt; t++) {
+        const int32_t *v = &patch->tri[3 * t];
+        if (sl_orient2d(&uv[2 * (int64_t)v[0]], &uv[2 * (int64_t)v[1]], &uv[2 * (int64_t)v[2]]) <= 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool all_finite(int64_t count, const double *x)
+{
+    for (int64_t i = 0; i < count; i++) {
+        if (!isfinite(x[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The border's edges as vertex pairs, for the test of self-crossing. */
+static sl_status list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
+{
+    int32_t *first = NULL, *halfedge = NULL;
+    sl_status status = sl_patch_border(patch, &first, &halfedge);
+    if (status != SL_OK) {
+        return status;
+    }
+    *nb = first[patch->loops];
+    *border = sl_alloc(2 * (int64_t)*nb, sizeof **border);
+    for (int32_t b = 0; b < *nb && *border != NULL; b++) {
+        (*border)[2 * b] = patch->tri[halfedge[b]];
+        (*border)[2 * b + 1] = patch->tri[sl_corner_next(halfedge[b])];
+    }
+    sl_free(first);
+    sl_free(halfedge);
+    return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+}
+
+/* *simple = the border does not meet itself under uv (or nobody asked). */
+static sl_status border_is_simple(const sl_stretch *s, const double *uv, bool *simple)
+{
+    sl_certificate certificate = {0};
+    *simple = true;
+    if (s->border == NULL) {
+        return SL_OK;
+    }
+    const sl_status status = sl_certify_embedding(uv, 0, s->patch->tri, s->nb, s->border, &certificate);
+    *simple = certificate.border_crossings == 0;
+    return status;
+}
+
+/* The power of two nearest to the scale of least energy: multiplying by it is exact, so no triangle can flip. */
+static double best_scale(const sl_stretch *s, double energy)
+{
+    const sl_stretch_sums at = {energy, 0.0};
+    double quadratic = 0.0;
+    for (int32_t t = 0; t < s->rest.nt; t++) {
+        double J[4];
+        sl_stretch_jacobian(&s->rest, s->patch->tri, s->uv, t, J);
+        const double I = J[0] * J[0] + J[1] * J[1] + J[2] * J[2] + J[3] * J[3], d = J[0] * J[3] - J[1] * J[2];
+        quadratic += s->rest.weight[t] * ((1.0 - s->def.w) * I + 2.0 * s->def.w * d);
+    }
+    const double inverse = at.energy - quadratic; /* E(c) = c^2 quadratic + c^-2 inverse */
+    if (!(inverse > 0.0) || !(quadratic > 0.0) || !isfinite(inverse / quadratic)) {
+        return 1.0;
+    }
+    return exp2(round(0.25 * log2(inverse / quadratic)));
+}
+
+static sl_status start(sl_stretch *s, const double *uv)
+{
+    const int64_t count = 2 * (int64_t)s->patch->nv;
+    if (!all_finite(count, uv) || !all_positive(s->patch, uv)) {
+        return SL_BAD_INPUT;
+    }
+    memcpy(s->uv, uv, (size_t)count * sizeof *uv);
+    sl_stretch_sums sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->uv);
+    if (!isfinite(sums.energy)) {
+        return SL_BAD_INPUT;
+    }
+    bool simple;
+    const sl_status status = border_is_simple(s, s->uv, &simple);
+    if (status != SL_OK || !simple) {
+        return status != SL_OK ? status : SL_BAD_INPUT;
+    }
+    s->info.energy_before = sums.energy;
+    s->done = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
+    s->info.converged = s->done;
+    const double scale = s->done ? 1.0 : best_scale(s, sums.energy);
+    if (scale != 1.0) {
+        for (int64_t i = 0; i < count; i++) {
+            s->uv[i] *= scale;
+        }
+        sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->uv);
+    }
+    s->energy = sums.energy;
+    s->info.energy_after = sums.energy;
+    s->info.l2 = sums.l2;
+    return SL_OK;
+}
+
+sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def, sl_stretch **out)
+{
+    sl_status status = SL_OK;
+    *out = NULL;
+    sl_stretch *s = sl_calloc(1, sizeof *s);
+    if (s == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    s->patch = patch;
+    s->def = *def;
+    const int64_t count = 2 * (int64_t)patch->nv;
+    s->uv = sl_alloc(count, sizeof *s->uv);
+    s->trial = sl_alloc(count, sizeof *s->trial);
+    s->gradient = sl_alloc(count, sizeof *s->gradient);
+    s->direction = sl_alloc(count, sizeof *s->direction);
+    if (s->uv == NULL || s->trial == NULL || s->gradient == NULL || s->direction == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    if (def->simple_border) {
+        SL_TRY(list_border(patch, &s->nb, &s->border));
+    }
+    SL_TRY(sl_stretch_rest_init(patch, &s->rest));
+    SL_TRY(start(s, uv));
+    if (!s->done) {
+        SL_TRY(sl_stretch_system_init(patch, &s->system));
+    }
+    *out = s;
+    s = NULL;
+cleanup:
+    sl_stretch_free(s);
+    return status;
+}
+
+/* trial = uv + length direction, accepted if flip-free, its border simple and its energy low enough. */
+static sl_status try_length(sl_stretch *s, double length, double slope, bool *accepted, sl_stretch_sums *sums)
+{
+    *accepted = false;
+    for (int64_t i = 0; i < 2 * (int64_t)s->patch->nv; i++) {
+        s->trial[i] = s->uv[i] + length * s->direction[i];
+    }
+    *sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->trial);
+    if (!(sums->energy <= s->energy + ARMIJO * length * slope) || !all_positive(s->patch, s->trial)) {
+        return SL_OK;
+    }
+    return border_is_simple(s, s->trial, accepted);
+}
+
+/* Backtracks from 0.9 of the flip-free step. *moved = false when no length will do. */
+static sl_status line_search(sl_stretch *s, double slope, bool *moved, sl_stretch_sums *sums)
+{
+    const double bound = sl_stretch_step_bound(s->patch, s->uv, s->direction);
+    double length = fmin(1.0, STEP_SHARE * bound);
+    *moved = false;
+    for (int i = 0; i < MAX_HALVINGS && !*moved; i++) {
+        const sl_status status = try_length(s, length, slope, moved, sums);
+        if (status != SL_OK) {
+            return status;
+        }
+        length *= 0.5;
+    }
+    return SL_OK;
+}
+
+static double dot(int64_t count, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < count; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+/* One projected Newton step. */
+static sl_status newton_step(sl_stretch *s)
+{
+    const int64_t count = 2 * (int64_t)s->patch->nv;
+    sl_stretch_assemble(s->patch, &s->rest, s->def.w, s->uv, &s->system, s->gradient);
+    const sl_status factored = sl_stretch_direction(&s->system, s->gradient, s->direction);
+    if (factored != SL_OK) {
+        s->done = true;
+        return factored == SL_NOT_POSITIVE_DEFINITE ? SL_OK : factored;
+    }
+    const double slope = dot(count, s->gradient, s->direction);
+    if (!all_finite(count, s->direction) || !(slope < 0.0)) {
+        s->done = true;
+        s->info.converged = slope == 0.0;
+        return SL_OK;
+    }
+    if (-0.5 * slope < 0.01 * s->def.relative_decrease * s->energy) { /* not even the model promises enough */
+        s->done = true;
+        s->info.converged = true;
+        return SL_OK;
+    }
+    bool moved;
+    sl_stretch_sums sums;
+    const sl_status status = line_search(s, slope, &moved, &sums);
+    if (status != SL_OK || !moved) {
+        s->done = true;
+        return status;
+    }
+    double *const old = s->uv;
+    s->uv = s->trial;
+    s->trial = old;
+    const double decrease = (s->energy - sums.energy) / s->energy;
+    s->energy = sums.energy;
+    s->info.energy_after = sums.energy;
+    s->info.l2 = sums.l2;
+    s->info.iterations++;
+    s->info.converged = decrease < s->def.relative_decrease || (s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2);
+    s->info.hopeless = !s->info.converged && s->def.hopeless_l2 > 0.0 && s->info.iterations >= s->def.hopeless_after &&
+                       sums.l2 > s->def.hopeless_l2;
+    s->done = s->info.converged || s->info.hopeless;
+    return SL_OK;
+}
+
+sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
+{
+    for (int32_t i = 0; i < n && !s->done && s->info.iterations < s->def.max_iterations; i++) {
+        sl_status status =
+            sl_report_progress(context, "minimising stretch", (double)s->info.iterations / s->def.max_iterations);
+        if (status == SL_OK) {
+            status = newton_step(s);
+        }
+        if (status != SL_OK) {
+            return status;
+        }
+    }
+    return SL_OK;
+}
+
+const sl_stretch_info *sl_stretch_info_of(const sl_stretch *s)
+{
+    return &s->info;
+}
+
+const double *sl_stretch_uv(const sl_stretch *s)
+{
+    return s->uv;
+}
+
+void sl_stretch_free(sl_stretch *s)
+{
+    if (s == NULL) {
+        return;
+    }
+    sl_stretch_rest_clear(&s->rest);
+    sl_stretch_system_clear(&s->system);
+    sl_free(s->uv);
+    sl_free(s->trial);
+    sl_free(s->gradient);
+    sl_free(s->direction);
+    sl_free(s->border);
+    sl_free(s);
+}
+
+sl_status sl_stretch_minimise(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context, double *uv,
+                              sl_stretch_info *info)
+{
+    sl_status status = SL_OK;
+    sl_stretch *s = NULL;
+    SL_TRY(sl_stretch_create(patch, uv, def, &s));
+    SL_TRY(sl_stretch_step(s, def->max_iterations, context));
+    memcpy(uv, s->uv, 2 * (size_t)patch->nv * sizeof *uv);
+    if (info != NULL) {
+        *info = s->info;
+    }
+cleanup:
+    sl_stretch_free(s);
+    return status;
+}
