@@ -1,0 +1,165 @@
+/* One chart of the recursion: flattened, or split. */
+#include "segment/segment_internal.h"
+
+#include "base/memory.h"
+
+void sl_chart_job_clear(sl_chart_job *job)
+{
+    sl_free(job->face);
+    sl_free(job->corner_uv);
+    sl_free(job->part);
+    sl_cut_list_clear(&job->joined);
+    sl_cut_list_clear(&job->seam);
+    *job = (sl_chart_job){0};
+}
+
+/* Turns halfedges of the piece into halfedges of the mesh. */
+static void to_parent(const sl_piece *piece, const sl_mesh *parent, sl_cut_list *list)
+{
+    for (int32_t k = 0; k < list->count; k++) {
+        list->halfedge[k] = sl_piece_halfedge(piece, parent, list->halfedge[k]);
+    }
+}
+
+/* A single facet glued to itself is unglued everywhere. */
+static sl_status unglue(sl_mesh *mesh, sl_cut_list *list)
+{
+    list->halfedge = sl_alloc(mesh->nh, sizeof *list->halfedge);
+    if (list->halfedge == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        if (mesh->twin[h] >= 0) {
+            list->halfedge[list->count++] = h;
+            sl_mesh_cut_edge(mesh, h);
+        }
+    }
+    return SL_OK;
+}
+
+static bool is_disk(const sl_topology *t)
+{
+    return t->genus == 0 && t->loops == 1;
+}
+
+/* Cuts that may make a disk of the piece without splitting it. */
+static sl_status open_up(const sl_recursion *r, sl_piece *piece, sl_chart_job *job)
+{
+    sl_status status = SL_OK;
+    if (is_disk(&job->topology)) {
+        return SL_OK;
+    }
+    if (piece->mesh->nf == 1) {
+        SL_TRY(unglue(piece->mesh, &job->joined));
+    } else if (r->def->join && job->topology.genus == 0 && job->topology.loops > 1) {
+        SL_TRY(sl_join_loops(piece->mesh, &job->joined));
+    }
+    if (job->joined.count > 0) {
+        SL_TRY(sl_piece_topology(piece, &job->topology));
+    }
+cleanup:
+    return status;
+}
+
+/* Tries to make a valid chart of the piece as a whole. Where that fails the piece is as before; the job still holds
+ * what was cut and the map, for a chart that must stay as it is in the end. */
+static sl_status try_whole(const sl_recursion *r, sl_piece *piece, sl_chart_job *job)
+{
+    sl_status status = SL_OK;
+    SL_TRY(sl_piece_topology(piece, &job->topology));
+    SL_TRY(open_up(r, piece, job));
+    job->corner_uv = sl_calloc(2 * (int64_t)piece->mesh->nh, sizeof *job->corner_uv);
+    if (job->corner_uv == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    SL_TRY(sl_flatten_piece(piece, &r->def->flatten, r->context, job->corner_uv, &job->flat));
+    job->done = job->flat.verdict == SL_CHART_VALID || piece->mesh->nf == 1;
+    if (!job->done) {
+        sl_sew_list(piece->mesh, &job->joined);
+    }
+cleanup:
+    return status;
+}
+
+/* Connected components of the two sides, numbered by first facet, and the seam between them. */
+static sl_status label_parts(sl_piece *piece, const uint8_t *side, sl_chart_job *job)
+{
+    sl_mesh *m = piece->mesh;
+    job->part = sl_alloc(m->nf, sizeof *job->part);
+    job->seam.halfedge = sl_alloc(m->nh, sizeof *job->seam.halfedge);
+    if (job->part == NULL || job->seam.halfedge == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (m->twin[h] >= 0 && side[m->face[h]] != side[m->face[m->twin[h]]]) {
+            job->seam.halfedge[job->seam.count++] = h;
+            sl_mesh_cut_edge(m, h);
+        }
+    }
+    return sl_mesh_components(m, job->part, &job->nparts);
+}
+
+/* partner[f] = facet of the piece that the mesh pairs with facet f, -1 = none here. NULL without pairing. */
+static sl_status local_partners(const sl_recursion *r, const sl_piece *piece, int32_t **partner)
+{
+    *partner = NULL;
+    if (r->partner == NULL) {
+        return SL_OK;
+    }
+    const int32_t n = piece->mesh->nf;
+    *partner = sl_alloc(n, sizeof **partner);
+    if (*partner == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t f = 0; f < n; f++) {
+        const int32_t g = r->partner[piece->face[f]];
+        (*partner)[f] = g < 0 ? -1 : sl_find_sorted(piece->face, n, g);
+    }
+    return SL_OK;
+}
+
+static sl_status split_piece(const sl_recursion *r, sl_piece *piece, sl_chart_job *job)
+{
+    sl_status status = SL_OK;
+    int32_t *partner = NULL;
+    sl_choice choice = {0};
+    SL_TRY(local_partners(r, piece, &partner));
+    SL_TRY(sl_choose_cut(piece, partner, r->def, r->context, &choice));
+    if (!choice.found) { /* nothing can be cut: the chart stays as it is, and says so */
+        job->done = job->capped = true;
+        goto cleanup;
+    }
+    SL_TRY(label_parts(piece, choice.side, job));
+    job->split = (sl_split){.depth = job->depth,
+                            .facets = job->count,
+                            .vector = choice.vector,
+                            .lambda = choice.lambda,
+                            .candidates = choice.candidates,
+                            .parts = job->nparts,
+                            .length = choice.length,
+                            .smoothed = choice.smoothed,
+                            .because = job->flat.verdict};
+cleanup:
+    sl_choice_clear(&choice);
+    sl_free(partner);
+    return status;
+}
+
+void sl_chart_job_run(const sl_recursion *r, sl_chart_job *job)
+{
+    sl_status status = SL_OK;
+    sl_piece *piece = NULL;
+    SL_TRY(sl_piece_create(r->mesh, r->triangulation, job->face, job->count, &piece));
+    SL_TRY(try_whole(r, piece, job));
+    if (!job->done && !r->may_split) {
+        job->done = job->capped = true;
+    }
+    if (!job->done) {
+        SL_TRY(split_piece(r, piece, job));
+    }
+    to_parent(piece, r->mesh, &job->joined);
+    to_parent(piece, r->mesh, &job->seam);
+cleanup:
+    sl_piece_free(piece);
+    job->status = status;
+}

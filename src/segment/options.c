@@ -1,0 +1,30 @@
+/* Settings of the segmentation. */
+#include "segment/segment.h"
+
+sl_segment_def sl_segment_default(void)
+{
+    return (sl_segment_def){.rule = SL_RULE_LOOKAHEAD,
+                            .vectors = 30,
+                            .pairing = SL_PAIR_AUTO,
+                            .smooth = 2,
+                            .join = true,
+                            .sew = true,
+                            .sew_stretch = 1.25,
+                            .protect_first = true,
+                            .max_charts = 100000,
+                            .flatten = sl_flatten_default()};
+}
+
+sl_segment_def sl_segment_paper(void)
+{
+    sl_segment_def def = sl_segment_default();
+    def.rule = SL_RULE_LONGEST;
+    def.pairing = SL_PAIR_OFF;
+    def.smooth = 0;
+    def.join = false;
+    def.sew = false;
+    def.flatten.abf.energy = SL_ABF_UNWEIGHTED;
+    def.flatten.minimise_stretch = false;
+    def.flatten.tutte = false;
+    return def;
+}

@@ -1,0 +1,219 @@
+/* The recursion: charts are flattened, and those that are not valid split, generation by generation. */
+#include "segment/segment_internal.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+/* State of a run. */
+typedef struct run {
+    const sl_mesh *mesh; /* untouched until the end */
+    const sl_triangulation *triangulation;
+    const sl_segment_def *def;
+    const sl_context *context;
+    sl_mesh *work;      /* a copy in which the seams are cut */
+    uint8_t *first_cut; /* nh: edges of the first cuts */
+    int32_t *partner;   /* nf, NULL = no pairing */
+    double paired_fraction;
+    sl_job_list pending, done;
+    sl_split *split;
+    int64_t nsplit, split_capacity;
+    int64_t facets_done;
+    int32_t merges;
+} run;
+
+static void run_clear(run *r)
+{
+    sl_mesh_free(r->work);
+    sl_free(r->first_cut);
+    sl_free(r->partner);
+    sl_free(r->split);
+    sl_job_list_clear(&r->pending);
+    sl_job_list_clear(&r->done);
+}
+
+/* Triangles are paired for the facet graph where the options, or the mesh itself, ask for it. */
+static sl_status pair_facets(run *r)
+{
+    sl_status status = SL_OK;
+    if (r->def->pairing == SL_PAIR_OFF) {
+        return SL_OK;
+    }
+    r->partner = sl_alloc(r->mesh->nf, sizeof *r->partner);
+    if (r->partner == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    SL_TRY(sl_pair_triangles(r->mesh, r->partner, &r->paired_fraction));
+    if (r->def->pairing == SL_PAIR_AUTO && r->paired_fraction < SL_PAIR_AUTO_FRACTION) {
+        sl_free(r->partner);
+        r->partner = NULL;
+    }
+cleanup:
+    return status;
+}
+
+/* A chart that stays: its inner cuts are made, its place in the list of results taken. */
+static sl_status finish(run *r, sl_chart_job *job)
+{
+    for (int32_t k = 0; k < job->joined.count; k++) {
+        sl_mesh_cut_edge(r->work, job->joined.halfedge[k]);
+    }
+    r->facets_done += job->count;
+    return sl_job_list_push(&r->done, job);
+}
+
+/* A chart that is split: its seam is cut, its parts wait for the next generation. */
+static sl_status descend(run *r, const sl_chart_job *job, sl_job_list *next)
+{
+    sl_status status = sl_reserve((void **)&r->split, &r->split_capacity, r->nsplit + 1, sizeof *r->split);
+    if (status != SL_OK) {
+        return status;
+    }
+    r->split[r->nsplit++] = job->split;
+    for (int32_t k = 0; k < job->seam.count; k++) {
+        const int32_t h = job->seam.halfedge[k];
+        if (job->depth == 0) {
+            r->first_cut[h] = r->first_cut[r->work->twin[h]] = 1;
+        }
+        sl_mesh_cut_edge(r->work, h);
+    }
+    return sl_part_jobs(job, next);
+}
+
+/* Deals with a generation's outcomes in order. The cap counts charts that are done, and those that are still to come.
+ */
+static sl_status harvest(run *r)
+{
+    sl_status status = SL_OK;
+    sl_job_list next = {0};
+    int64_t charts = r->done.count + r->pending.count;
+    for (int64_t k = 0; k < r->pending.count; k++) {
+        sl_chart_job *job = &r->pending.job[k];
+        if (!job->done && charts + job->nparts - 1 > r->def->max_charts) {
+            job->done = job->capped = true;
+        }
+        if (job->done) {
+            SL_TRY(finish(r, job));
+        } else {
+            charts += job->nparts - 1;
+            SL_TRY(descend(r, job, &next));
+        }
+    }
+    sl_job_list_clear(&r->pending);
+    r->pending = next;
+    next = (sl_job_list){0};
+cleanup:
+    sl_job_list_clear(&next);
+    return status;
+}
+
+static sl_status recurse(run *r)
+{
+    sl_status status = SL_OK;
+    SL_TRY(sl_component_jobs(r->mesh, &r->pending));
+    while (r->pending.count > 0) {
+        const sl_recursion recursion = {.mesh = r->mesh,
+                                        .triangulation = r->triangulation,
+                                        .def = r->def,
+                                        .partner = r->partner,
+                                        .may_split = r->done.count + r->pending.count < r->def->max_charts};
+        SL_TRY(sl_report_progress(r->context, "segment", (double)r->facets_done / r->mesh->nf));
+        SL_TRY(sl_run_jobs(&recursion, r->context, &r->pending));
+        SL_TRY(harvest(r));
+    }
+cleanup:
+    return status;
+}
+
+static sl_status run_create(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
+                            const sl_context *context, run *r)
+{
+    *r = (run){.mesh = mesh, .triangulation = triangulation, .def = def, .context = context};
+    r->first_cut = sl_calloc(mesh->nh, sizeof *r->first_cut);
+    return r->first_cut == NULL ? SL_OUT_OF_MEMORY : sl_mesh_copy(mesh, &r->work);
+}
+
+/* Hands the result over; from here on nothing fails. */
+static sl_status deliver(run *r, sl_mesh *mesh, sl_segmentation **out)
+{
+    const sl_status status = sl_segmentation_assemble(mesh, &r->done, out);
+    if (status != SL_OK) {
+        return status;
+    }
+    memcpy(mesh->twin, r->work->twin, (size_t)mesh->nh * sizeof *mesh->twin);
+    memcpy(mesh->sew, r->work->sew, (size_t)mesh->nh * sizeof *mesh->sew);
+    (*out)->split = r->split;
+    (*out)->nsplit = (int32_t)r->nsplit;
+    r->split = NULL;
+    (*out)->merges = r->merges;
+    (*out)->paired = r->partner != NULL;
+    (*out)->paired_fraction = r->paired_fraction;
+    return SL_OK;
+}
+
+/**
+ * Segments a mesh into charts by recursive spectral cuts, and flattens them.
+ *
+ * Each component is flattened as a whole; what is not valid is split along a spectral cut, and so on with the connected
+ * parts. The charts of one generation run in parallel. Every split makes parts of fewer facets, and a single facet is
+ * never split, so the recursion ends.
+ *
+ * @param[in,out] mesh           its seams are cut where SL_OK is returned; otherwise it is as it was
+ * @param[in]     triangulation  of the mesh
+ * @param[in]     def
+ * @param[in]     context        nullable
+ * @param[out]    out            owned by the caller; NULL on failure
+ *
+ * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads.
+ * Source: Sec. 3.3.  Deviations: validity bounds the stretch; the rules, smoothing, joining and sewing are options.
+ */
+sl_status sl_segment(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
+                     const sl_context *context, sl_segmentation **out)
+{
+    sl_status status = SL_OK;
+    run r;
+    *out = NULL;
+    SL_TRY(run_create(mesh, triangulation, def, context, &r));
+    SL_TRY(pair_facets(&r));
+    SL_TRY(recurse(&r));
+    if (def->sew) {
+        SL_TRY(sl_sew_charts(r.work, mesh, triangulation, r.first_cut, def, context, &r.done, &r.merges));
+    }
+    SL_TRY(deliver(&r, mesh, out));
+cleanup:
+    run_clear(&r);
+    return status;
+}
+
+/**
+ * Flattens the charts that the caller's own seams make.
+ *
+ * @param[in,out] mesh           only loops are cut, where def->join says so; as it was on failure
+ * @param[in]     triangulation  of the mesh
+ * @param[in]     def            join and flatten are used
+ * @param[in]     context        nullable
+ * @param[out]    out            owned by the caller; NULL on failure
+ *
+ * Charts that are no disk or not valid are kept with their verdict, and not marked as capped.
+ * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads.
+ */
+sl_status sl_flatten_charts(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
+                            const sl_context *context, sl_segmentation **out)
+{
+    sl_status status = SL_OK;
+    run r;
+    *out = NULL;
+    SL_TRY(run_create(mesh, triangulation, def, context, &r));
+    SL_TRY(sl_component_jobs(mesh, &r.pending));
+    const sl_recursion recursion = {.mesh = mesh, .triangulation = triangulation, .def = def, .may_split = false};
+    SL_TRY(sl_report_progress(context, "flatten", 0.0));
+    SL_TRY(sl_run_jobs(&recursion, context, &r.pending));
+    for (int64_t k = 0; k < r.pending.count; k++) {
+        r.pending.job[k].capped = false;
+        SL_TRY(finish(&r, &r.pending.job[k]));
+    }
+    SL_TRY(deliver(&r, mesh, out));
+cleanup:
+    run_clear(&r);
+    return status;
+}
