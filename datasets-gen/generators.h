@@ -1,0 +1,37 @@
+/* Meshes made on the spot: known shapes, the same bytes for the same seed.
+ * Layer: datasets-gen (may include meshio and below). */
+#ifndef SL_GENERATORS_H
+#define SL_GENERATORS_H
+
+#include "mesh/build.h"
+
+/* A polygon mesh; all arrays owned. */
+typedef struct sl_generated {
+    int32_t nv, nf;
+    double *xyz;         /* nv x 3 */
+    int32_t *face_first; /* nf + 1 */
+    int32_t *index;      /* face_first[nf] */
+} sl_generated;
+
+/* seed: random details (bumps, spikes); scale: 1 = the usual size, each further one about four times the facets.
+ * SL_OUT_OF_MEMORY. Deterministic. */
+typedef sl_status sl_generate_fn(uint64_t seed, int32_t scale, sl_generated **out);
+
+typedef struct sl_generator {
+    const char *name; /* "hand" */
+    const char *what; /* one line for a list */
+    sl_generate_fn *make;
+} sl_generator;
+
+/* All generators, in a fixed order; borrowed. */
+const sl_generator *sl_generators(int32_t *count);
+
+/* The generator of that name, NULL = none. */
+const sl_generator *sl_generator_find(const char *name);
+
+/* The mesh as the builder takes it, borrowed. */
+void sl_generated_polygons(const sl_generated *mesh, sl_polygons *polygons);
+
+void sl_generated_free(sl_generated *mesh); /* NULL is a no-op */
+
+#endif

@@ -1,0 +1,56 @@
+/* seamlab: the program. One verb a file. */
+#include "cli/cli.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct verb_entry {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary;
+} verb_entry;
+
+static const verb_entry verbs[] = {
+    {"unwrap", cli_unwrap, "cut, flatten and pack a mesh: UVs, a sidecar, pictures"},
+    {"measure", cli_measure, "charts, seams, distortion, overlap and fill of any mesh with UVs"},
+    {"check", cli_check, "what is wrong with a mesh and how it would be repaired"},
+    {"segment", cli_segment, "the charts only: labels, seam edges, a coloured PLY"},
+    {"spectrum", cli_spectrum, "eigenvectors of the facet graph and the cuts they propose"},
+    {"demo", cli_demo, "the whole way on a generated mesh, with pictures"},
+};
+
+static void print_usage(FILE *out)
+{
+    fprintf(out, "seamlab: automatic and scriptable UV unwrapping\n\n"
+                 "Examples:\n"
+                 "  seamlab demo\n"
+                 "  seamlab unwrap model.obj -o model-uv.obj --preview pictures\n"
+                 "  seamlab measure model-uv.obj\n\n"
+                 "Usage: seamlab VERB [options] files\n\nVerbs:\n");
+    for (size_t k = 0; k < SL_COUNTOF(verbs); k++) {
+        fprintf(out, "  %-10s %s\n", verbs[k].name, verbs[k].summary);
+    }
+    fprintf(out,
+            "\n`seamlab VERB --help` explains one. Exit codes: 0 done, 1 internal or system error, 2 usage,\n"
+            "3 bad input, 4 infeasible or a warning under --strict, 5 own check failed, 6 limit, 130 interrupted.\n");
+}
+
+int main(int argc, char **argv)
+{
+    if (argc >= 2 && strcmp(argv[1], "--version") == 0) {
+        printf("seamlab %s\n", SEAMLAB_VERSION);
+        return CLI_DONE;
+    }
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_usage(argc < 2 ? stderr : stdout);
+        return argc < 2 ? CLI_USAGE : CLI_DONE;
+    }
+    for (size_t k = 0; k < SL_COUNTOF(verbs); k++) {
+        if (strcmp(argv[1], verbs[k].name) == 0) {
+            return verbs[k].run(argc, argv);
+        }
+    }
+    fprintf(stderr, "seamlab: there is no verb '%s'\n", argv[1]);
+    print_usage(stderr);
+    return CLI_USAGE;
+}

@@ -1,0 +1,44 @@
+/* Command-line options from a table, and the help text from the same table.
+ * Layer: cli. */
+#ifndef SL_CLI_OPTIONS_H
+#define SL_CLI_OPTIONS_H
+
+#include "base/status.h"
+
+typedef enum cli_kind {
+    CLI_FLAG,   /* bool */
+    CLI_ON_OFF, /* bool, from "on" or "off" */
+    CLI_INT,    /* int32_t in [lo, hi] */
+    CLI_REAL,   /* double in [lo, hi] */
+    CLI_TEXT,   /* const char *, borrowed from argv */
+    CLI_CHOICE  /* int32_t: position in choices */
+} cli_kind;
+
+typedef struct cli_option {
+    const char *name; /* without the dashes */
+    char letter;      /* 0 = none */
+    cli_kind kind;
+    void *target;         /* holds the default before parsing */
+    double lo, hi;        /* range of a number */
+    const char *choices;  /* "longest|length-lambda|lookahead" */
+    const char *argument; /* what the help calls the argument; NULL for flags and choices */
+    const char *help;
+} cli_option;
+
+/* What a verb takes. */
+typedef struct cli_verb {
+    const char *name;
+    const char *usage;    /* "seamlab unwrap IN -o OUT [options]" */
+    const char *summary;  /* one line */
+    const char *examples; /* lines, each indented by two blanks */
+    int32_t min_files, max_files;
+} cli_verb;
+
+enum { CLI_MAX_FILES = 64 };
+
+/* Fills the targets from argv[first ..]. files: room for verb->max_files borrowed names. Returns -1 to go on, otherwise
+ * the exit code to leave with (0 after --help, 2 after a usage error, which is explained on stderr). */
+int cli_parse(const cli_verb *verb, const cli_option *options, int32_t count, int argc, char **argv, int first,
+              const char **files, int32_t *file_count);
+
+#endif

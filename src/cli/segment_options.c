@@ -1,0 +1,56 @@
+#include "cli/segment_options.h"
+
+#include <math.h>
+#include <string.h>
+
+static void load_def(cli_segment_options *o, sl_segment_def def)
+{
+    o->def = def;
+    o->rule = (int32_t)def.rule;
+    o->pairing = (int32_t)def.pairing;
+    o->energy = (int32_t)def.flatten.abf.energy;
+}
+
+void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
+{
+    load_def(o, sl_segment_default());
+    o->preset = 0;
+    for (int a = 2; a < argc; a++) {
+        const bool next = strcmp(argv[a], "--preset") == 0 && a + 1 < argc && strcmp(argv[a + 1], "paper") == 0;
+        if (next || strcmp(argv[a], "--preset=paper") == 0) {
+            load_def(o, sl_segment_paper());
+            o->preset = 1;
+        }
+    }
+}
+
+void cli_segment_table(cli_segment_options *o, cli_option *table)
+{
+    const cli_option entries[CLI_SEGMENT_OPTIONS] = {
+        {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper", NULL,
+         "paper = as printed; other options override"},
+        {"rule", 0, CLI_CHOICE, &o->rule, 0, 0, "longest|length-lambda|lookahead", NULL, "which passing cut is taken"},
+        {"vectors", 0, CLI_INT, &o->def.vectors, 2, 1000, NULL, "N", "eigenvectors a cut (30)"},
+        {"pair", 0, CLI_CHOICE, &o->pairing, 0, 0, "auto|on|off", NULL, "triangles back into quads for the graph"},
+        {"smooth", 0, CLI_INT, &o->def.smooth, 0, 100, NULL, "K", "band of the minimum cut in rings, 0 = off (2)"},
+        {"join", 0, CLI_ON_OFF, &o->def.join, 0, 0, NULL, NULL, "join border loops by shortest paths (on)"},
+        {"sew", 0, CLI_ON_OFF, &o->def.sew, 0, 0, NULL, NULL, "merge charts while they stay valid (on)"},
+        {"sew-stretch", 0, CLI_REAL, &o->def.sew_stretch, 1.0, 1e6, NULL, "L2", "bound on a merged chart (1.25)"},
+        {"protect-first", 0, CLI_ON_OFF, &o->def.protect_first, 0, 0, NULL, NULL, "never sew the first cut (on)"},
+        {"max-stretch", 0, CLI_REAL, &o->def.flatten.max_stretch, 1.0, 1e300, NULL, "L2", "bound on a chart (1.5)"},
+        {"max-charts", 0, CLI_INT, &o->def.max_charts, 1, INT32_MAX, NULL, "N", "stop splitting there (100000)"},
+        {"energy", 0, CLI_CHOICE, &o->energy, 0, 0, "weighted|unweighted", NULL,
+         "ABF++: 1/phi^2, or the paper's Eq. 1"},
+        {"tutte", 0, CLI_ON_OFF, &o->def.flatten.tutte, 0, 0, NULL, NULL, "Tutte's embedding as last resort (on)"},
+        {"minimise", 0, CLI_ON_OFF, &o->def.flatten.minimise_stretch, 0, 0, NULL, NULL,
+         "lower the stretch before splitting a chart for it (on)"},
+    };
+    memcpy(table, entries, sizeof entries);
+}
+
+void cli_segment_apply(cli_segment_options *o)
+{
+    o->def.rule = (sl_cut_rule)o->rule;
+    o->def.pairing = (sl_pairing)o->pairing;
+    o->def.flatten.abf.energy = (sl_abf_energy)o->energy;
+}

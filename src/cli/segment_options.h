@@ -1,0 +1,25 @@
+/* The options that decide where a mesh is cut, shared by `unwrap` and `segment`.
+ * Layer: cli. */
+#ifndef SL_CLI_SEGMENT_OPTIONS_H
+#define SL_CLI_SEGMENT_OPTIONS_H
+
+#include "cli/options.h"
+#include "segment/segment.h"
+
+typedef struct cli_segment_options {
+    sl_segment_def def;
+    int32_t rule, pairing, energy, preset; /* positions in their choices */
+} cli_segment_options;
+
+#define CLI_SEGMENT_OPTIONS 14
+
+/* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands. */
+void cli_segment_preset(cli_segment_options *o, int argc, char **argv);
+
+/* Fills CLI_SEGMENT_OPTIONS entries. */
+void cli_segment_table(cli_segment_options *o, cli_option *table);
+
+/* Copies the choices into o->def after parsing. */
+void cli_segment_apply(cli_segment_options *o);
+
+#endif

@@ -1,0 +1,214 @@
+/* seamlab unwrap: a mesh in, a checked atlas out. */
+#include "atlas/sidecar.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "cli/cli.h"
+#include "cli/preview.h"
+#include "cli/segment_options.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const cli_verb verb = {
+    .name = "unwrap",
+    .usage = "seamlab unwrap IN -o OUT [options]",
+    .summary = "Cuts a mesh into charts, lays them flat, packs them, checks the result and writes it\n"
+               "with a sidecar OUT.atlas.json that says what was done.",
+    .examples = "  seamlab unwrap model.obj -o model-uv.obj\n"
+                "  seamlab unwrap model.ply -o model-uv.ply --preview pictures --max-stretch 1.2\n"
+                "  seamlab unwrap model.obj -o paper.obj --preset paper\n"
+                "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n",
+    .min_files = 1,
+    .max_files = 1,
+};
+
+typedef struct unwrap_options {
+    cli_run run;
+    cli_segment_options segment;
+    sl_atlas_def def;
+    const char *output, *preview, *seams, *labels;
+    bool keep_seams;
+} unwrap_options;
+
+#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 8)
+
+static void option_table(unwrap_options *o, cli_option *table)
+{
+    const cli_option own[8] = {
+        {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY to write"},
+        {"resolution", 0, CLI_INT, &o->def.pack.resolution, 16, 65536, NULL, "N", "texels a side (2048)"},
+        {"margin", 0, CLI_REAL, &o->def.pack.margin, 0, 1024, NULL, "T", "texels between charts (4)"},
+        {"preview", 0, CLI_TEXT, &o->preview, 0, 0, NULL, "DIR", "pictures of the model and the atlas"},
+        {"seams", 0, CLI_TEXT, &o->seams, 0, 0, NULL, "FILE", "your seams: a line of two vertex numbers an edge"},
+        {"labels", 0, CLI_TEXT, &o->labels, 0, 0, NULL, "FILE", "your charts: a line with a number a facet"},
+        {"keep-seams", 0, CLI_FLAG, &o->keep_seams, 0, 0, NULL, NULL, "the input's own UV seams"},
+        {"strict", 0, CLI_FLAG, &o->run.strict, 0, 0, NULL, NULL, "exit 4 when there is a warning"},
+    };
+    memcpy(table, own, sizeof own);
+    cli_segment_table(&o->segment, table + 8);
+    cli_common_options(&o->run, table + 8 + CLI_SEGMENT_OPTIONS);
+}
+
+static int usage(const char *what)
+{
+    fprintf(stderr, "seamlab unwrap: %s\n  try: seamlab unwrap --help\n", what);
+    return CLI_USAGE;
+}
+
+static int check_options(const unwrap_options *o)
+{
+    if (o->output == NULL) {
+        return usage("-o OUT is missing");
+    }
+    if (!sl_meshfile_can_hold_uv(o->output)) {
+        return usage("the output's format cannot hold UVs; use .obj or .ply");
+    }
+    if ((o->seams != NULL) + (o->labels != NULL) + o->keep_seams > 1) {
+        return usage("--seams, --labels and --keep-seams exclude one another");
+    }
+    return -1;
+}
+
+/* Reads the user's seams, if any. *owned is freed by the caller. */
+static int read_seams(unwrap_options *o, const sl_meshfile *file, int32_t **owned)
+{
+    sl_diag diag = sl_diag_none();
+    sl_seam_input *input = &o->def.seam_input;
+    sl_status status = SL_OK;
+    if (o->seams != NULL) {
+        status = sl_seams_read_edges(o->seams, owned, &input->edge_count, &diag);
+        input->edge = *owned;
+        o->def.seams = SL_SEAMS_EDGES;
+    } else if (o->labels != NULL) {
+        status = sl_seams_read_labels(o->labels, file->nf, owned, &diag);
+        input->label = *owned;
+        o->def.seams = SL_SEAMS_LABELS;
+    } else if (o->keep_seams) {
+        input->corner_uv = file->corner_uv;
+        o->def.seams = SL_SEAMS_KEEP_UV;
+        if (file->corner_uv == NULL) {
+            sl_diag_reason(&diag, "the input has no UVs whose seams could be kept");
+            status = SL_BAD_INPUT;
+        }
+    }
+    const int code = cli_fail(&o->run, status, &diag);
+    return status == SL_IO ? CLI_BAD_INPUT : code;
+}
+
+/* The sidecar is renamed into place after the mesh: neither is ever half there. */
+static int write_atlas(unwrap_options *o, const sl_meshfile *file, const sl_atlas *atlas)
+{
+    sl_diag diag = sl_diag_none();
+    char path[4096], *text = NULL;
+    sl_writer *sidecar = NULL;
+    sl_status status = SL_OK;
+    const bool to_stdout = strcmp(o->output, "-") == 0;
+    if (!to_stdout) {
+        sl_sidecar_path(o->output, path, sizeof path);
+        SL_TRY(sl_sidecar_text(atlas, &o->def, &text));
+        SL_TRY(sl_writer_create(path, &sidecar, &diag));
+        sl_writer_text(sidecar, text);
+    }
+    SL_TRY(sl_meshfile_write(o->output, file, atlas->input_corner_uv, &diag));
+    if (!to_stdout) {
+        status = sl_writer_commit(sidecar, &diag);
+        sidecar = NULL;
+    }
+cleanup:
+    sl_writer_abandon(sidecar);
+    sl_free(text);
+    return cli_fail(&o->run, status, &diag);
+}
+
+static double worst_stretch(const sl_segmentation *seg)
+{
+    double worst = 1.0;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        worst = fmax(worst, seg->chart[c].flat.distortion.l2);
+    }
+    return worst;
+}
+
+static void print_summary(unwrap_options *o, const sl_atlas *atlas)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    const double seam = sl_atlas_seam_length(atlas->mesh) / sl_mesh_diagonal(atlas->mesh);
+    if (o->run.json) {
+        json_t *j =
+            json_pack("{s:i, s:s, s:i, s:f, s:f, s:f, s:b, s:i, s:I, s:i, s:i}", "schema", 1, "output", o->output,
+                      "charts", seg->nchart, "seamDiag", seam, "worstL2", worst_stretch(seg), "fill", atlas->pack.fill,
+                      "certified", atlas->check.passed, "flipped", atlas->check.flipped, "overlapping_texels",
+                      (json_int_t)atlas->check.overlapping_texels, "warnings", atlas->nwarning, "splits", seg->nsplit);
+        json_dumpf(j, strcmp(o->output, "-") == 0 ? stderr : stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
+        fputc('\n', strcmp(o->output, "-") == 0 ? stderr : stdout);
+        json_decref(j);
+        return;
+    }
+    cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, no flip, no overlap at %d^2",
+             seg->nchart, seam, worst_stretch(seg), atlas->pack.fill, atlas->check.resolution);
+}
+
+static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *atlas)
+{
+    char losses[256];
+    const sl_atlas_check *check = &atlas->check;
+    for (int32_t k = 0; k < atlas->nwarning; k++) {
+        cli_note(&o->run, "warning: %s", atlas->warning[k].text);
+    }
+    if (!check->passed) {
+        fprintf(stderr,
+                "seamlab unwrap: the atlas failed its own check and is not written: %d flipped, %d degenerate "
+                "triangles, %d charts that may overlap themselves, %lld texels hit twice\n",
+                check->flipped, check->degenerate, check->uncertified_charts, (long long)check->overlapping_texels);
+        return CLI_CHECK_FAILED;
+    }
+    if (sl_meshfile_losses(file, o->output, losses, sizeof losses)) {
+        cli_note(&o->run, "note: the output's format does not hold %s", losses);
+    }
+    int code = write_atlas(o, file, atlas);
+    if (code == CLI_DONE && o->preview != NULL) {
+        code = cli_preview(&o->run, o->preview, atlas);
+    }
+    if (code == CLI_DONE) {
+        print_summary(o, atlas);
+    }
+    return code == CLI_DONE && o->run.strict && atlas->nwarning > 0 ? CLI_INFEASIBLE : code;
+}
+
+int cli_unwrap(int argc, char **argv)
+{
+    unwrap_options o = {.run = {.verb = verb.name}, .def = sl_atlas_default()};
+    cli_option options[UNWRAP_OPTIONS];
+    const char *files[1];
+    int32_t file_count = 0, *owned = NULL;
+    cli_segment_preset(&o.segment, argc, argv);
+    option_table(&o, options);
+    int code = cli_parse(&verb, options, UNWRAP_OPTIONS, argc, argv, 2, files, &file_count);
+    if (code >= 0 || (code = check_options(&o)) >= 0 || (code = cli_begin(&o.run)) >= 0) {
+        return code;
+    }
+    cli_segment_apply(&o.segment);
+    o.def.segment = o.segment.def;
+    sl_diag diag = sl_diag_none();
+    sl_meshfile *file = NULL;
+    sl_atlas *atlas = NULL;
+    sl_polygons polygons;
+    code = cli_read_mesh(&o.run, files[0], &file);
+    if (code == CLI_DONE) {
+        code = read_seams(&o, file, &owned);
+    }
+    if (code == CLI_DONE) {
+        sl_meshfile_polygons(file, &polygons);
+        snprintf(diag.file, sizeof diag.file, "%s", files[0]);
+        code = cli_fail(&o.run, sl_unwrap(&polygons, &o.def, &o.run.context, &atlas, &diag), &diag);
+    }
+    if (code == CLI_DONE) {
+        code = deliver(&o, file, atlas);
+    }
+    sl_atlas_free(atlas);
+    sl_meshfile_free(file);
+    sl_free(owned);
+    return cli_end(&o.run, code);
+}
