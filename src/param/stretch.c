@@ -9,7 +9,15 @@
 
 static const double STEP_SHARE = 0.9; /* of the step to the first flip */
 static const double ARMIJO = 1e-4;
-static const int MAX_HALVINGS = 40; /* of a step: 1e-12 of the first trial */
+static const double NEGLIGIBLE = 1e-2; /* of the decrease asked for */
+static const int MAX_HALVINGS = 40;    /* of a step: 1e-12 of the first trial */
+static const int MAX_DOUBLINGS = 10;   /* of a full step */
+
+/* Far from the minimum (4 is isometric) a plain Newton step is stopped short by a few triangles that would flip; the
+ * softened one is not. The two take turns by what the last step gained. */
+static const double FAR_ENERGY = 100.0;
+static const double SOFT_CAP = 1.5; /* bound on |ln s|: singular values within 0.22 and 4.5 */
+static const double SOFT_GAIN = 0.03, PLAIN_GAIN = 0.05;
 
 struct sl_stretch {
     const sl_patch *patch;
@@ -17,10 +25,11 @@ struct sl_stretch {
     sl_stretch_info info;
     sl_stretch_rest rest;
     sl_stretch_system system;
-    double *uv, *trial, *gradient, *direction; /* 2 nv each */
+    double *uv, *trial, *gradient, *force, *direction; /* 2 nv each */
     int32_t nb;
     int32_t *border; /* nb vertex pairs; NULL unless simple_border */
     double energy;
+    bool softened; /* the next step */
     bool done;
 };
 
@@ -127,6 +136,7 @@ static sl_status start(sl_stretch *s, const double *uv)
         sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->uv);
     }
     s->energy = sums.energy;
+    s->softened = sums.energy > FAR_ENERGY;
     s->info.energy_after = sums.energy;
     s->info.l2 = sums.l2;
     return SL_OK;
@@ -146,8 +156,9 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     s->uv = sl_alloc(count, sizeof *s->uv);
     s->trial = sl_alloc(count, sizeof *s->trial);
     s->gradient = sl_alloc(count, sizeof *s->gradient);
+    s->force = sl_alloc(count, sizeof *s->force);
     s->direction = sl_alloc(count, sizeof *s->direction);
-    if (s->uv == NULL || s->trial == NULL || s->gradient == NULL || s->direction == NULL) {
+    if (s->uv == NULL || s->trial == NULL || s->gradient == NULL || s->force == NULL || s->direction == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -180,18 +191,42 @@ static sl_status try_length(sl_stretch *s, double length, double slope, bool *ac
     return border_is_simple(s, s->trial, accepted);
 }
 
-/* Backtracks from 0.9 of the flip-free step. *moved = false when no length will do. */
+static void swap_in_trial(sl_stretch *s)
+{
+    double *const old = s->uv;
+    s->uv = s->trial;
+    s->trial = old;
+}
+
+/* Backtracks from 0.9 of the flip-free step; where a full step did well, tries longer ones (a projected Hessian is too
+ * stiff where the energy is not convex). *moved = false when no length will do; else trial and *sums hold the result.
+ */
 static sl_status line_search(sl_stretch *s, double slope, bool *moved, sl_stretch_sums *sums)
 {
-    const double bound = sl_stretch_step_bound(s->patch, s->uv, s->direction);
-    double length = fmin(1.0, STEP_SHARE * bound);
+    const double bound = STEP_SHARE * sl_stretch_step_bound(s->patch, s->uv, s->direction);
+    double length = fmin(1.0, bound);
     *moved = false;
     for (int i = 0; i < MAX_HALVINGS && !*moved; i++) {
         const sl_status status = try_length(s, length, slope, moved, sums);
         if (status != SL_OK) {
             return status;
         }
-        length *= 0.5;
+        length *= *moved ? 1.0 : 0.5;
+    }
+    bool better = *moved && length == 1.0;
+    for (int i = 0; i < MAX_DOUBLINGS && better && 2.0 * length <= bound; i++) {
+        sl_stretch_sums longer;
+        sl_status status = try_length(s, 2.0 * length, slope, &better, &longer);
+        better = better && longer.energy < sums->energy;
+        if (better) {
+            length *= 2.0;
+            *sums = longer;
+        } else if (status == SL_OK) {
+            status = try_length(s, length, slope, moved, sums); /* back to the best one */
+        }
+        if (status != SL_OK) {
+            return status;
+        }
     }
     return SL_OK;
 }
@@ -205,47 +240,61 @@ static double dot(int64_t count, const double *a, const double *b)
     return sum;
 }
 
-/* One projected Newton step. */
-static sl_status newton_step(sl_stretch *s)
+/* A step along the projected Newton direction, softened or not. *moved = false when there is none to take. */
+static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums *sums)
 {
     const int64_t count = 2 * (int64_t)s->patch->nv;
-    sl_stretch_assemble(s->patch, &s->rest, s->def.w, s->uv, &s->system, s->gradient);
-    const sl_status factored = sl_stretch_direction(&s->system, s->gradient, s->direction);
-    if (factored != SL_OK) {
-        s->done = true;
-        return factored == SL_NOT_POSITIVE_DEFINITE ? SL_OK : factored;
+    *moved = false;
+    sl_stretch_assemble(s->patch, &s->rest, s->def.w, softened ? SOFT_CAP : INFINITY, s->uv, &s->system, s->gradient,
+                        s->force);
+    const sl_status status = sl_stretch_direction(&s->system, s->force, s->direction);
+    if (status != SL_OK) {
+        return status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
     }
     const double slope = dot(count, s->gradient, s->direction);
     if (!all_finite(count, s->direction) || !(slope < 0.0)) {
-        s->done = true;
         s->info.converged = slope == 0.0;
         return SL_OK;
     }
-    if (-0.5 * slope < 0.01 * s->def.relative_decrease * s->energy) { /* not even the model promises enough */
-        s->done = true;
-        s->info.converged = true;
+    if (!softened && -slope < NEGLIGIBLE * s->def.relative_decrease * s->energy) {
+        s->info.converged = true; /* not even the linear model promises enough */
         return SL_OK;
     }
-    bool moved;
-    sl_stretch_sums sums;
-    const sl_status status = line_search(s, slope, &moved, &sums);
-    if (status != SL_OK || !moved) {
-        s->done = true;
-        return status;
-    }
-    double *const old = s->uv;
-    s->uv = s->trial;
-    s->trial = old;
-    const double decrease = (s->energy - sums.energy) / s->energy;
+    return line_search(s, slope, moved, sums);
+}
+
+/* Books an accepted step and says whether to go on. */
+static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
+{
+    const double gain = (s->energy - sums.energy) / s->energy;
+    swap_in_trial(s);
     s->energy = sums.energy;
+    s->softened = sums.energy > FAR_ENERGY && (softened ? gain >= SOFT_GAIN : gain < PLAIN_GAIN);
     s->info.energy_after = sums.energy;
     s->info.l2 = sums.l2;
     s->info.iterations++;
-    s->info.converged = decrease < s->def.relative_decrease || (s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2);
+    const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
+    s->info.converged = reached || (!softened && !s->softened && gain < s->def.relative_decrease);
     s->info.hopeless = !s->info.converged && s->def.hopeless_l2 > 0.0 && s->info.iterations >= s->def.hopeless_after &&
                        sums.l2 > s->def.hopeless_l2;
     s->done = s->info.converged || s->info.hopeless;
-    return SL_OK;
+}
+
+static sl_status newton_step(sl_stretch *s)
+{
+    bool moved = false, softened = s->softened;
+    sl_stretch_sums sums = {0};
+    sl_status status = move(s, softened, &moved, &sums);
+    if (status == SL_OK && !moved && softened) { /* the softened direction may lead uphill */
+        softened = false;
+        status = move(s, false, &moved, &sums);
+    }
+    if (status == SL_OK && moved) {
+        accept(s, softened, sums);
+    } else {
+        s->done = true;
+    }
+    return status;
 }
 
 sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
@@ -283,6 +332,7 @@ void sl_stretch_free(sl_stretch *s)
     sl_free(s->uv);
     sl_free(s->trial);
     sl_free(s->gradient);
+    sl_free(s->force);
     sl_free(s->direction);
     sl_free(s->border);
     sl_free(s);

@@ -55,13 +55,20 @@ typedef struct sl_stretch_system {
 SL_NODISCARD sl_status sl_stretch_system_init(const sl_patch *patch, sl_stretch_system *system);
 void sl_stretch_system_clear(sl_stretch_system *system);
 
-/* Fills H with the projected Hessian (negative eigenvalues dropped) and gradient (2 nv) with the energy's gradient. */
-void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, double w, const double *uv,
-                         sl_stretch_system *system, double *gradient);
+/* Replaces the rest shape of a triangle by one nearer to its image, if a logarithm of a singular value of J exceeds
+ * cap: J and the gradients g of its hat functions become those of the new shape. d > 0. False when nothing was done.
+ * Source: Liu, Ye, Ni, Fu 2018, "Progressive parameterizations", Sec. 3. */
+bool sl_stretch_soften(double cap, double J[4], double g[4]);
 
-/* direction = -inv(H + shift diag(H)) gradient with the least shift of a short list that can be factored.
+/* Fills H with the projected Hessian (negative eigenvalues dropped), gradient (2 nv) with the energy's gradient, and
+ * force (2 nv) with minus the right side of the system. These two are the same unless cap is finite: then H and force
+ * are those of the softened rest shapes. */
+void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, double w, double cap, const double *uv,
+                         sl_stretch_system *system, double *gradient, double *force);
+
+/* direction = -inv(H + shift diag(H)) force with the least shift of a short list that can be factored.
  * SL_NOT_POSITIVE_DEFINITE when none can. */
-SL_NODISCARD sl_status sl_stretch_direction(sl_stretch_system *system, const double *gradient, double *direction);
+SL_NODISCARD sl_status sl_stretch_direction(sl_stretch_system *system, const double *force, double *direction);
 
 /* The largest step along direction before some triangle's area vanishes; infinite when none ever does.
  * Source: Smith and Schaefer 2015, "Bijective parameterization with free boundaries", Sec. 3.3. */

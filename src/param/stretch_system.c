@@ -192,29 +192,41 @@ static void scatter(const int32_t v[3], const int64_t slot[3], double K[6][6], s
     }
 }
 
-void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, double w, const double *uv,
-                         sl_stretch_system *system, double *gradient)
+/* Adds weight P g, the force of one triangle, to the vertices' sums. */
+static void add_force(const int32_t v[3], double weight, const double P[4], const double g[4], double *sum)
+{
+    double q[6];
+    pull_back(P, g, q);
+    for (int k = 0; k < 3; k++) {
+        sum[2 * (int64_t)v[k]] += weight * q[2 * k];
+        sum[2 * (int64_t)v[k] + 1] += weight * q[2 * k + 1];
+    }
+}
+
+void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, double w, double cap, const double *uv,
+                         sl_stretch_system *system, double *gradient, double *force)
 {
     sl_csc *H = system->H;
     memset(H->val, 0, (size_t)H->colptr[H->ncols] * sizeof *H->val);
     memset(gradient, 0, 2 * (size_t)patch->nv * sizeof *gradient);
+    memset(force, 0, 2 * (size_t)patch->nv * sizeof *force);
     for (int32_t t = 0; t < patch->nt; t++) {
-        const int32_t *v = &patch->tri[3 * t];
-        const double *g = &rest->gradient[4 * (int64_t)t];
-        double J[4], P[4], force[6], K[6][6];
+        const int32_t *v = &patch->tri[3 * (int64_t)t];
+        double g[4], J[4], P[4], K[6][6];
+        memcpy(g, &rest->gradient[4 * (int64_t)t], sizeof g);
         sl_stretch_jacobian(rest, patch->tri, uv, t, J);
         sl_stretch_density_gradient(w, J, P);
-        pull_back(P, g, force);
-        for (int k = 0; k < 3; k++) {
-            gradient[2 * (int64_t)v[k]] += rest->weight[t] * force[2 * k];
-            gradient[2 * (int64_t)v[k] + 1] += rest->weight[t] * force[2 * k + 1];
+        add_force(v, rest->weight[t], P, g, gradient);
+        if (sl_stretch_soften(cap, J, g)) {
+            sl_stretch_density_gradient(w, J, P);
         }
+        add_force(v, rest->weight[t], P, g, force);
         element_hessian(w, rest->weight[t], J, g, K);
         scatter(v, &system->slot[3 * (int64_t)t], K, H);
     }
 }
 
-sl_status sl_stretch_direction(sl_stretch_system *system, const double *gradient, double *direction)
+sl_status sl_stretch_direction(sl_stretch_system *system, const double *force, double *direction)
 {
     sl_csc *H = system->H;
     sl_status status = SL_NOT_POSITIVE_DEFINITE;
@@ -230,7 +242,7 @@ sl_status sl_stretch_direction(sl_stretch_system *system, const double *gradient
         return status == SL_BAD_INPUT ? SL_NOT_POSITIVE_DEFINITE : status; /* overflow: no step from here either */
     }
     for (int32_t i = 0; i < H->ncols; i++) {
-        direction[i] = -gradient[i];
+        direction[i] = -force[i];
     }
     sl_cholesky_solve(system->factor, direction, 1, system->work);
     return SL_OK;
