@@ -125,6 +125,19 @@ static void target_has_its_final_distance_when_the_search_stops_there(void **sta
     }
 }
 
+static void search_does_not_go_beyond_its_target(void **state)
+{
+    (void)state;
+    const test_edge edge[] = {{0, 1, 0.7}, {1, 2, 1.3}, {2, 3, 0.4}, {3, 4, 2.1}};
+    const int32_t source = 0;
+    double distance[5];
+    int32_t parent[5];
+    sl_graph g = test_graph_from_edges(5, edge, 4);
+    assert_int_equal(sl_graph_shortest_paths(&g, &source, 1, NULL, 1, distance, parent, NULL), SL_OK);
+    assert_true(distance[1] == 0.7 && distance[2] == HUGE_VAL && distance[3] == HUGE_VAL);
+    sl_graph_clear(&g);
+}
+
 /* Of all best ways the one over the parent settled first: by distance, then by number. */
 static void ties_are_broken_by_the_smaller_node_number(void **state)
 {
@@ -178,6 +191,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_those_of_floyd_warshall),
         cmocka_unit_test(target_has_its_final_distance_when_the_search_stops_there),
+        cmocka_unit_test(search_does_not_go_beyond_its_target),
         cmocka_unit_test(ties_are_broken_by_the_smaller_node_number),
         cmocka_unit_test(missing_weights_count_one_each),
     };
