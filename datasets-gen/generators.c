@@ -1,0 +1,44 @@
+#include "generators.h"
+
+#include "base/memory.h"
+#include "builder.h"
+
+#include <string.h>
+
+static const sl_generator table[] = {
+    {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere},
+    {"torus", "a torus of quads, genus 1", gen_torus},
+    {"box", "a closed box of quads: sharp edges, flat faces", gen_box},
+};
+
+const sl_generator *sl_generators(int32_t *count)
+{
+    *count = (int32_t)SL_COUNTOF(table);
+    return table;
+}
+
+const sl_generator *sl_generator_find(const char *name)
+{
+    for (size_t k = 0; k < SL_COUNTOF(table); k++) {
+        if (strcmp(table[k].name, name) == 0) {
+            return &table[k];
+        }
+    }
+    return NULL;
+}
+
+void sl_generated_polygons(const sl_generated *mesh, sl_polygons *polygons)
+{
+    *polygons = (sl_polygons){mesh->nv, mesh->nf, mesh->xyz, mesh->face_first, mesh->index};
+}
+
+void sl_generated_free(sl_generated *mesh)
+{
+    if (mesh == NULL) {
+        return;
+    }
+    sl_free(mesh->xyz);
+    sl_free(mesh->face_first);
+    sl_free(mesh->index);
+    sl_free(mesh);
+}
