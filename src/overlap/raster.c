@@ -6,8 +6,7 @@
 /* Positions reach 2^38, so the numerators of far corners need more than 64 bits; the set-up alone. */
 __extension__ typedef __int128 wide;
 
-static const int64_t limit_bound = INT64_C(1) << 60; /* spans this far off cannot come back within 2^15 rows */
-static const int64_t near_bound = INT64_C(1) << 29;  /* below it every numerator fits 64 bits */
+static const int64_t near_bound = INT64_C(1) << 29; /* below it every numerator fits 64 bits */
 
 int64_t sl_raster_snap(double u, int32_t size)
 {
@@ -74,7 +73,8 @@ void sl_raster_rows(const sl_raster_triangle *triangle, int32_t height, int32_t 
     *end = (int32_t)least(height, greatest(0, floor_divide(high, SL_RASTER_SUBPIXEL) + 1));
 }
 
-/* The edge's limit in `row` is floor(numerator / divisor), its numerator growing by `step` a row. */
+/* The edge's limit in the first row is floor(numerator / divisor), the numerator growing by `step` a row. Limits fit 64
+ * bits: heights are float32 numbers, so two that differ do so by 2^-25 of themselves, and no limit exceeds 2^57. */
 static void start_edge(sl_raster_edge *edge, wide numerator, int64_t divisor, int64_t step, bool near)
 {
     edge->divisor = divisor;
@@ -87,7 +87,7 @@ static void start_edge(sl_raster_edge *edge, wide numerator, int64_t divisor, in
     }
     const wide rest = numerator % divisor, limit = numerator / divisor - (rest < 0);
     edge->rest = (int64_t)(rest < 0 ? rest + divisor : rest);
-    edge->limit = limit > limit_bound ? limit_bound : limit < -limit_bound ? -limit_bound : (int64_t)limit;
+    edge->limit = (int64_t)limit;
 }
 
 static void step_edge(sl_raster_edge *edge)
