@@ -263,6 +263,17 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
     return line_search(s, slope, moved, sums);
 }
 
+/* After a step that lowered the energy by the share `gain`; far from the minimum a small gain means nothing: 1. */
+static bool is_hopeless(const sl_stretch *s, double gain)
+{
+    const sl_stretch_def *def = &s->def;
+    if (def->hopeless_l2 > 0.0 && s->info.iterations >= def->hopeless_after && s->info.l2 > def->hopeless_l2) {
+        return true;
+    }
+    return def->hopeless_gain > 0.0 && def->target_l2 > 0.0 &&
+           s->info.l2 * (1.0 - def->hopeless_gain * gain) > def->target_l2;
+}
+
 /* Books an accepted step and says whether to go on. */
 static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
 {
@@ -275,8 +286,7 @@ static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
     s->info.iterations++;
     const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
     s->info.converged = reached || (!softened && !s->softened && gain < s->def.relative_decrease);
-    s->info.hopeless = !s->info.converged && s->def.hopeless_l2 > 0.0 && s->info.iterations >= s->def.hopeless_after &&
-                       sums.l2 > s->def.hopeless_l2;
+    s->info.hopeless = !s->info.converged && is_hopeless(s, softened || s->softened ? 1.0 : gain);
     s->done = s->info.converged || s->info.hopeless;
 }
 

@@ -17,7 +17,9 @@ typedef struct sl_stretch_def {
     double target_l2;         /* stop as soon as the L2 stretch is at most this; 0 = never; default 0 */
     double hopeless_l2;     /* give up after `hopeless_after` steps when L2 is still above this; 0 = never; default 0 */
     int32_t hopeless_after; /* default 15 */
-    bool simple_border;     /* refuse steps that make the border cross itself; needs a simple start; default false */
+    double hopeless_gain; /* give up once target_l2 is out of reach even if L2 falls by this many times the share of the
+                           * energy that the last plain step gained; 0 = never; default 0 */
+    bool simple_border;   /* refuse steps that make the border cross itself; needs a simple start; default false */
 } sl_stretch_def;
 
 sl_stretch_def sl_stretch_default(void);
@@ -32,13 +34,17 @@ typedef struct sl_stretch_info {
 
 typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor; borrows the patch */
 
-/* uv: nv x 2, copied; must have no flipped or zero-area triangle (3D-degenerate triangles are given a small regular
- * target). SL_BAD_INPUT otherwise; SL_OUT_OF_MEMORY. */
+/* uv: nv x 2, copied; must have no flipped or zero-area triangle and, with simple_border, a simple border: SL_BAD_INPUT
+ * otherwise; SL_OUT_OF_MEMORY. Triangles degenerate in 3D (as distortion.h says) get a raised height as their rest
+ * shape and do not count for L2. */
 SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def,
                                          sl_stretch **out);
 
 /* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of
- * the first flip (Smith and Schaefer 2015), Armijo. Stays flip-free. SL_CANCELLED. Allocates nothing. */
+ * the first flip (Smith and Schaefer 2015), Armijo; longer than a full step where that pays. While the map is far from
+ * its minimum (energy above 100 a unit of area) the direction is taken from rest shapes softened towards their images
+ * (Liu et al. 2018). The energy never rises and no triangle ever flips. SL_CANCELLED, SL_OUT_OF_MEMORY (only with
+ * simple_border: the test of the border allocates; nothing else does). */
 SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_context *context);
 
 const sl_stretch_info *sl_stretch_info_of(const sl_stretch *solver);

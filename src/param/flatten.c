@@ -1,0 +1,297 @@
+#include "param/flatten.h"
+
+#include "base/memory.h"
+#include "param/flatten_internal.h"
+#include "param/lscm.h"
+#include "param/tutte.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The minimiser aims a little below the bound, so that rounding and scaling leave the chart within it. */
+static const double TARGET_SHARE = 0.98;
+
+/* A start of more stretch than this is given up for Tutte's: with limbs shrunk by orders of magnitude a conformal map
+ * needs up to three times the steps. */
+static const double FAR_L2 = 10.0;
+
+/* When the minimiser gives up (unless the caller says): what is still as far off as this after as many steps, or gains
+ * too little. Over 78 charts of six meshes no chart was lost by it that full minimisation would have made valid. */
+static const double HOPELESS_GAIN = 8.0;
+
+/* One run of the chain: the patch, what it borrows, and the best map so far. */
+typedef struct chain {
+    const sl_patch *patch;
+    const sl_flatten_def *def;
+    const sl_context *context;
+    double max_stretch;
+    int32_t nb;
+    int32_t *border;           /* nb vertex pairs */
+    double *map;               /* nv x 2: the map under trial */
+    double *best;              /* nv x 2: borrowed from the caller */
+    sl_flatten_result *result; /* of best */
+} chain;
+
+sl_flatten_def sl_flatten_default(void)
+{
+    return (sl_flatten_def){.abf = sl_abf_default(),
+                            .minimise_stretch = true,
+                            .tutte = true,
+                            .max_stretch = 1.5,
+                            .stretch = sl_stretch_default()};
+}
+
+const char *sl_flatten_method_name(sl_flatten_method method)
+{
+    static const char *const name[] = {"none", "abf++", "lscm", "tutte", "planar"};
+    return method >= 0 && (size_t)method < SL_COUNTOF(name) ? name[method] : "unknown";
+}
+
+const char *sl_flatten_verdict_name(sl_flatten_verdict verdict)
+{
+    static const char *const name[] = {"valid", "not a disk", "not converged", "flipped", "overlaps", "stretched"};
+    return verdict >= 0 && (size_t)verdict < SL_COUNTOF(name) ? name[verdict] : "unknown";
+}
+
+/* How much a verdict still says for its map. */
+static int rank(sl_flatten_verdict verdict)
+{
+    switch (verdict) {
+    case SL_CHART_VALID:
+        return 5;
+    case SL_CHART_STRETCHED:
+        return 4;
+    case SL_CHART_OVERLAPS:
+        return 3;
+    case SL_CHART_FLIPPED:
+        return 2;
+    case SL_CHART_NOT_CONVERGED:
+        return 1;
+    case SL_CHART_NOT_A_DISK:
+        break;
+    }
+    return 0;
+}
+
+static sl_status list_border(chain *c)
+{
+    int32_t *first = NULL, *halfedge = NULL;
+    sl_status status = sl_patch_border(c->patch, &first, &halfedge);
+    if (status != SL_OK) {
+        return status;
+    }
+    c->nb = first[c->patch->loops];
+    c->border = sl_alloc(2 * (int64_t)c->nb, sizeof *c->border);
+    for (int32_t b = 0; b < c->nb && c->border != NULL; b++) {
+        c->border[2 * b] = c->patch->tri[halfedge[b]];
+        c->border[2 * b + 1] = c->patch->tri[sl_corner_next(halfedge[b])];
+    }
+    sl_free(first);
+    sl_free(halfedge);
+    return c->border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+}
+
+static bool all_finite(int64_t count, const double *x)
+{
+    for (int64_t i = 0; i < count; i++) {
+        if (!isfinite(x[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Judges c->map; `converged` is the method's own word. */
+static sl_status judge(const chain *c, bool converged, sl_flatten_result *out)
+{
+    const sl_patch *p = c->patch;
+    sl_status status = SL_OK;
+    if (!all_finite(2 * (int64_t)p->nv, c->map)) {
+        out->verdict = SL_CHART_NOT_CONVERGED;
+        return SL_OK;
+    }
+    SL_TRY(sl_certify_embedding(c->map, p->nt, p->tri, c->nb, c->border, &out->certificate));
+    SL_TRY(sl_distortion_measure_indexed(p->nt, p->tri, p->xyz, c->map, &out->distortion));
+    if (!converged) {
+        out->verdict = SL_CHART_NOT_CONVERGED;
+    } else if (out->certificate.flipped > 0 || out->certificate.degenerate > 0) {
+        out->verdict = SL_CHART_FLIPPED;
+    } else if (!out->certificate.embedded) {
+        out->verdict = SL_CHART_OVERLAPS;
+    } else {
+        out->verdict = out->distortion.l2 <= c->max_stretch ? SL_CHART_VALID : SL_CHART_STRETCHED;
+    }
+cleanup:
+    return status;
+}
+
+/* Judges c->map and keeps it if it is better than the best so far. trial may be NULL. */
+static sl_status consider(chain *c, sl_flatten_method method, bool minimised, bool converged, sl_flatten_result *trial)
+{
+    sl_flatten_result judged = *c->result;
+    judged.method = method;
+    judged.stretch_minimised = minimised;
+    const sl_status status = judge(c, converged, &judged);
+    if (status != SL_OK) {
+        return status;
+    }
+    const int old = rank(c->result->verdict), new = rank(judged.verdict);
+    if (c->result->method == SL_FLATTEN_NONE || new > old ||
+        (new == old &&judged.distortion.l2 < c->result->distortion.l2)) {
+        if (all_finite(2 * (int64_t)c->patch->nv, c->map)) {
+            memcpy(c->best, c->map, 2 * (size_t)c->patch->nv * sizeof *c->best);
+            *c->result = judged;
+        }
+    }
+    if (trial != NULL) {
+        *trial = judged;
+    }
+    return SL_OK;
+}
+
+/* A method without an answer is no failure of the chain; running out of memory or being cancelled is. */
+static bool is_no_answer(sl_status status)
+{
+    return status == SL_SINGULAR || status == SL_INFEASIBLE || status == SL_BAD_INPUT ||
+           status == SL_NOT_POSITIVE_DEFINITE;
+}
+
+/* Facets that need no method: flat ones, and those without any area. *done = the map found is final. */
+static sl_status try_plane(chain *c, bool one_facet, bool *done)
+{
+    *done = false;
+    double area = 0.0;
+    for (int32_t t = 0; t < c->patch->nt; t++) {
+        area += sl_patch_triangle_area(c->patch, t);
+    }
+    sl_status status = SL_OK;
+    if (sl_flatten_project(c->patch, c->map)) {
+        sl_flatten_result trial;
+        SL_TRY(consider(c, SL_FLATTEN_PLANAR, false, true, &trial));
+        *done = trial.verdict == SL_CHART_VALID;
+    }
+    if (!*done && one_facet && (c->patch->nt == 1 || area == 0.0)) { /* a facet without area: one point, and exempt */
+        memset(c->best, 0, 2 * (size_t)c->patch->nv * sizeof *c->best);
+        c->result->method = SL_FLATTEN_PLANAR;
+        c->result->verdict = SL_CHART_VALID;
+        *done = true;
+    }
+    if (!*done) { /* a folded plane is no map to keep */
+        memset(c->best, 0, 2 * (size_t)c->patch->nv * sizeof *c->best);
+        c->result->method = SL_FLATTEN_NONE;
+        c->result->verdict = SL_CHART_NOT_CONVERGED;
+    }
+cleanup:
+    return status;
+}
+
+/* ABF++, and LSCM where that fails (unless every fallback is off). trial: the verdict on the last map made. */
+static sl_status try_conformal(chain *c, sl_flatten_result *trial)
+{
+    sl_status status = sl_abf_flatten(c->patch, &c->def->abf, c->context, c->map, &c->result->abf);
+    if (status != SL_OK && !is_no_answer(status)) {
+        return status;
+    }
+    trial->verdict = SL_CHART_NOT_CONVERGED;
+    if (status == SL_OK) {
+        SL_TRY(consider(c, SL_FLATTEN_ABF, false, c->result->abf.converged, trial));
+    }
+    if (rank(trial->verdict) > rank(SL_CHART_FLIPPED) || (!c->def->tutte && !c->def->minimise_stretch)) {
+        return SL_OK;
+    }
+    status = sl_lscm(c->patch, c->context, c->map);
+    if (status == SL_OK) {
+        SL_TRY(consider(c, SL_FLATTEN_LSCM, false, true, trial));
+    } else if (is_no_answer(status)) {
+        status = SL_OK;
+    }
+cleanup:
+    return status;
+}
+
+/* Refines c->map, an embedding of method `method`. Its border stays simple: what comes out is an embedding. */
+static sl_status refine(chain *c, sl_flatten_method method)
+{
+    sl_stretch_def def = c->def->stretch;
+    def.simple_border = true;
+    if (isfinite(c->max_stretch)) {
+        def.target_l2 = TARGET_SHARE * c->max_stretch;
+        def.hopeless_l2 = def.hopeless_l2 > 0.0 ? def.hopeless_l2 : FAR_L2;
+        def.hopeless_gain = def.hopeless_gain > 0.0 ? def.hopeless_gain : HOPELESS_GAIN;
+    }
+    sl_status status = sl_stretch_minimise(c->patch, &def, c->context, c->map, &c->result->stretch);
+    if (status != SL_OK) {
+        return is_no_answer(status) ? SL_OK : status;
+    }
+    sl_flatten_scale(c->patch, c->map);
+    return consider(c, method, true, true, NULL);
+}
+
+/* Tutte's embedding, with uniform weights: cotangents shrink long limbs by up to 1e4 more. */
+static sl_status try_tutte(chain *c, sl_flatten_result *trial)
+{
+    const sl_status status = sl_tutte(c->patch, SL_TUTTE_UNIFORM, c->context, c->map);
+    trial->verdict = SL_CHART_NOT_CONVERGED;
+    if (status != SL_OK) {
+        return is_no_answer(status) ? SL_OK : status;
+    }
+    return consider(c, SL_FLATTEN_TUTTE, false, true, trial);
+}
+
+/* The chain for a disk that is not flat. */
+static sl_status flatten_disk(chain *c)
+{
+    sl_status status = SL_OK;
+    sl_flatten_result trial;
+    SL_TRY(try_conformal(c, &trial));
+    if (trial.verdict == SL_CHART_VALID || (!c->def->tutte && !c->def->minimise_stretch)) {
+        goto cleanup;
+    }
+    const sl_flatten_method conformal = trial.method;
+    if (c->def->minimise_stretch && trial.verdict == SL_CHART_STRETCHED &&
+        (trial.distortion.l2 <= FAR_L2 || !c->def->tutte)) {
+        SL_TRY(refine(c, conformal));
+        goto cleanup;
+    }
+    if (!c->def->tutte) {
+        goto cleanup;
+    }
+    SL_TRY(try_tutte(c, &trial));
+    if (c->def->minimise_stretch && trial.verdict == SL_CHART_STRETCHED) {
+        SL_TRY(refine(c, SL_FLATTEN_TUTTE));
+    }
+cleanup:
+    return status;
+}
+
+sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context, double *uv,
+                     sl_flatten_result *result)
+{
+    sl_status status = SL_OK;
+    const bool one_facet = sl_flatten_is_one_facet(patch);
+    memset(uv, 0, 2 * (size_t)patch->nv * sizeof *uv);
+    *result = (sl_flatten_result){.verdict = SL_CHART_NOT_A_DISK, .certificate.first_edge = {-1, -1}};
+    if (!sl_patch_is_disk(patch)) {
+        return SL_OK;
+    }
+    chain c = {.patch = patch,
+               .def = def,
+               .context = context,
+               .max_stretch = one_facet ? INFINITY : def->max_stretch,
+               .best = uv,
+               .result = result};
+    bool done;
+    c.map = sl_calloc(2 * (int64_t)patch->nv, sizeof *c.map);
+    if (c.map == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    SL_TRY(list_border(&c));
+    SL_TRY(try_plane(&c, one_facet, &done));
+    if (!done) {
+        SL_TRY(flatten_disk(&c));
+    }
+cleanup:
+    sl_free(c.map);
+    sl_free(c.border);
+    return status;
+}

@@ -1,0 +1,20 @@
+/* Flat patches: the shortest way into the plane.
+ * Layer: param; private to it and to its tests. */
+#ifndef SL_PARAM_FLATTEN_INTERNAL_H
+#define SL_PARAM_FLATTEN_INTERNAL_H
+
+#include "mesh/patch.h"
+
+/* True when every vertex is within a rounding-sized share (1e-12) of the patch's extent from one plane; uv (nv x 2) is
+ * then the orthogonal projection along the patch's vector area, counter-clockwise where the patch is. False when the
+ * vector area vanishes. */
+bool sl_flatten_project(const sl_patch *patch, double *uv);
+
+/* True when all triangles come from one facet of the mesh. */
+bool sl_flatten_is_one_facet(const sl_patch *patch);
+
+/* Scales uv about the origin to the patch's 3D area; nothing is done where either area vanishes or the scale is 1 to
+ * rounding. */
+void sl_flatten_scale(const sl_patch *patch, double *uv);
+
+#endif
