@@ -1,0 +1,142 @@
+/* Eigenpairs of facet graphs against the dense solver, residuals, components. */
+#include "base/memory.h"
+#include "spectral/shapes.h"
+#include "spectral/spectrum.h"
+
+/* y = (D - A) x straight from the adjacency. */
+static void multiply(const sl_graph *g, const double *x, double *y)
+{
+    for (int32_t i = 0; i < g->n; i++) {
+        y[i] = 0.0;
+        for (int32_t p = g->first[i]; p < g->first[i + 1]; p++) {
+            y[i] += x[i] - x[g->adj[p]];
+        }
+    }
+}
+
+static double largest_residual(const sl_graph *g, const sl_spectrum *s)
+{
+    double worst = 0.0, *y = malloc((size_t)g->n * sizeof *y);
+    for (int32_t k = 0; k < s->count; k++) {
+        const double *v = s->vectors + (int64_t)k * g->n;
+        double sum = 0.0;
+        multiply(g, v, y);
+        for (int32_t i = 0; i < g->n; i++) {
+            sum += (y[i] - s->lambda[k] * v[i]) * (y[i] - s->lambda[k] * v[i]);
+        }
+        worst = fmax(worst, sqrt(sum));
+    }
+    free(y);
+    return worst;
+}
+
+static void check_against_dense(const sl_facet_graph *graph, int32_t count)
+{
+    const int32_t n = graph->graph.n;
+    double *A = calloc((size_t)(n * n), sizeof *A), *V = malloc((size_t)(n * n) * sizeof *V);
+    double *lambda = malloc((size_t)n * sizeof *lambda);
+    for (int32_t i = 0; i < n; i++) {
+        for (int32_t p = graph->graph.first[i]; p < graph->graph.first[i + 1]; p++) {
+            A[i * n + i] += 1.0;
+            A[i * n + graph->graph.adj[p]] -= 1.0;
+        }
+    }
+    assert_int_equal(sl_dense_eigen(n, A, lambda, V), SL_OK);
+    sl_spectrum *s = NULL;
+    assert_int_equal(sl_spectrum_compute(graph, count, NULL, &s), SL_OK);
+    assert_int_equal(s->n, n);
+    assert_int_equal(s->count, count < n ? count : n);
+    for (int32_t k = 0; k < s->count; k++) {
+        assert_true(test_near(s->lambda[k], lambda[k], 1e-9));
+    }
+    assert_true(largest_residual(&graph->graph, s) < 1e-6);
+    sl_spectrum_free(s);
+    free(A);
+    free(V);
+    free(lambda);
+}
+
+static void smallest_eigenvalues_agree_with_the_dense_solver(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xe19e);
+    for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
+        const test_facets kind = (test_facets)test_index(&rng, 3);
+        sl_mesh *mesh = trial % 3 == 0   ? test_patch_mesh(&rng, 5 + test_index(&rng, 6), 9, kind, NULL)
+                        : trial % 3 == 1 ? test_torus_mesh(&rng, 8 + test_index(&rng, 6), 7, 0.4, kind)
+                                         : test_spiky_mesh(&rng, 4, 5, 0.8, kind);
+        sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+        check_against_dense(graph, 2 + test_index(&rng, 29));
+        sl_facet_graph_free(graph);
+        sl_mesh_free(mesh);
+    }
+}
+
+static void count_is_clipped_to_the_number_of_nodes(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xc119);
+    sl_mesh *mesh = test_patch_mesh(&rng, 2, 3, TEST_QUADS, NULL);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    check_against_dense(graph, 30);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+/* Cells dropped in two full rows leave three strips of different widths. */
+static void every_component_has_its_own_null_vector(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xc0);
+    uint8_t drop[14 * 6] = {0};
+    for (int32_t j = 0; j < 6; j++) {
+        drop[3 * 6 + j] = drop[8 * 6 + j] = 1;
+    }
+    sl_mesh *mesh = test_patch_mesh(&rng, 14, 6, TEST_TRIANGLES, drop);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    for (int32_t count = 2; count <= 12; count += 5) { /* fewer than the components, then more */
+        sl_spectrum *s = NULL;
+        assert_int_equal(sl_spectrum_compute(graph, count, NULL, &s), SL_OK);
+        for (int32_t k = 0; k < count; k++) {
+            assert_true(k < 3 ? fabs(s->lambda[k]) < 1e-9 : s->lambda[k] > 1e-3);
+        }
+        assert_true(largest_residual(&graph->graph, s) < 1e-6);
+        sl_spectrum_free(s);
+    }
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+static bool cancel(void *user, const char *stage, double fraction)
+{
+    (void)user;
+    (void)stage;
+    (void)fraction;
+    return false;
+}
+
+static void a_cancelled_spectrum_is_not_delivered(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xca);
+    sl_mesh *mesh = test_torus_mesh(&rng, 60, 40, 0.4, TEST_TRIANGLES); /* past the size that is solved densely */
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    sl_spectrum *s = (sl_spectrum *)&rng;
+    const sl_context context = {.progress = cancel};
+    assert_int_equal(sl_spectrum_compute(graph, 30, &context, &s), SL_CANCELLED);
+    assert_null(s);
+    sl_spectrum_free(s);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(smallest_eigenvalues_agree_with_the_dense_solver),
+        cmocka_unit_test(count_is_clipped_to_the_number_of_nodes),
+        cmocka_unit_test(every_component_has_its_own_null_vector),
+        cmocka_unit_test(a_cancelled_spectrum_is_not_delivered),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
