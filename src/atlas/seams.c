@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,7 +95,7 @@ static sl_status cut_uv_seams(sl_mesh *mesh, const double *corner_uv, sl_diag *d
     }
     sl_status status = SL_OK;
     for (int32_t c = 0; c < mesh->nh; c++) {
-        if (!(corner_uv[2 * (int64_t)c] == corner_uv[2 * (int64_t)c])) {
+        if (isnan(corner_uv[2 * (int64_t)c]) || isnan(corner_uv[2 * (int64_t)c + 1])) {
             sl_diag_reason(diag, "facet %d has a corner without a UV, so there are no seams to keep",
                            mesh->face[c] + 1);
             sl_diag_hint(diag, "leave out --keep-seams, or give seams by --seams or --labels");
