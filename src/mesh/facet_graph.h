@@ -16,8 +16,6 @@ typedef struct sl_facet_graph {
     double *centroid;  /* n x 3 */
 } sl_facet_graph;
 
-/* partner[f] = facet paired with f into a quad, or -1. Length mesh->nf; from sl_pair_triangles. */
-
 /* The graph of faces[0 .. nfaces - 1] over twin pointers inside the set. partner may be NULL (no pairing); a pair
  * counts only when both its facets are in the set and glued. Node order = order of the first facet. SL_OUT_OF_MEMORY.
  * O(corners). */
@@ -26,11 +24,13 @@ SL_NODISCARD sl_status sl_facet_graph_create(const sl_mesh *mesh, const int32_t 
 
 void sl_facet_graph_free(sl_facet_graph *graph); /* NULL is a no-op */
 
-/* Pairs triangles back into quads: candidate pairs are scored by the quality of the quad they would form (planarity,
- * right angles) and by how much the shared edge looks like a diagonal, and matched greedily best first, then improved
- * along augmenting paths while that pairs more triangles. *paired_fraction = share of the triangles paired well enough
- * to call the mesh a triangulated quad mesh (`--pair auto` pairs when it is at least 0.9). partner: nf.
- * SL_OUT_OF_MEMORY. */
+/* Pairs triangles back into quads: a matching of the edges between triangles, weighted by the shape of the quad they
+ * would form (planar, right angles), as heavy as message passing finds it, then improved along augmenting paths while
+ * that pairs more triangles. partner[f] = facet paired with f, or -1; length nf. *paired_fraction = share of the
+ * triangles in pairs that look like a quad mesh: well shaped, three of four corners regular (four edges, or on the
+ * border). Triangulated quad meshes have 0.93 and more, others 0.88 and less: `--pair auto` pairs when it is at least
+ * 0.9. Facets that are no triangles stay alone. SL_OUT_OF_MEMORY. Deterministic. O(nh log nh), 200 rounds over nh at
+ * most. */
 SL_NODISCARD sl_status sl_pair_triangles(const sl_mesh *mesh, int32_t *partner, double *paired_fraction);
 
 #endif

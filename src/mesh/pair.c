@@ -9,7 +9,9 @@
 /* Below this a quad is no candidate: an angle beyond 162 degrees, or as bad a bend. */
 static const double least_score = 0.2;
 
-/* A pair counts as a quad of a quad mesh when so many of its four corners are regular. */
+/* A pair counts as a quad of a quad mesh when it is of this quality at least (angles within 45 degrees of right ones),
+ * and so many of its four corners are regular. */
+static const double good_score = 0.5;
 enum {
     REGULAR_CORNERS = 3,
 };
@@ -41,21 +43,21 @@ double sl_pair_score(const sl_mesh *m, int32_t h)
 }
 
 typedef struct candidate {
-    double score;
+    double belief;
     int32_t halfedge;
 } candidate;
 
 static int compare_candidates(const void *a, const void *b)
 {
     const candidate *x = a, *y = b;
-    if (x->score != y->score) {
-        return x->score > y->score ? -1 : 1;
+    if (x->belief != y->belief) {
+        return x->belief > y->belief ? -1 : 1;
     }
     return (x->halfedge > y->halfedge) - (x->halfedge < y->halfedge);
 }
 
-/* Scores every edge between two triangles; lists the candidates, one halfedge each. */
-static int32_t find_candidates(const sl_mesh *m, double *score, candidate *list)
+/* score[h] of every edge between two triangles, 0 where that is no candidate; returns the number of candidates. */
+static int32_t score_edges(const sl_mesh *m, double *score)
 {
     int32_t n = 0;
     for (int32_t h = 0; h < m->nh; h++) {
@@ -69,10 +71,20 @@ static int32_t find_candidates(const sl_mesh *m, double *score, candidate *list)
         const double s = sl_pair_score(m, h);
         if (s > least_score) {
             score[h] = score[t] = s;
-            list[n++] = (candidate){s, h};
+            n++;
         }
     }
     return n;
+}
+
+static void list_candidates(const sl_matching *matching, const double *belief, candidate *list)
+{
+    const sl_mesh *m = matching->mesh;
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (matching->score[h] > 0.0 && h < m->twin[h]) {
+            *list++ = (candidate){belief[h], h};
+        }
+    }
 }
 
 static void match_greedily(sl_matching *matching, candidate *list, int32_t n)
@@ -115,7 +127,7 @@ static sl_status measure(const sl_matching *matching, double *fraction)
             for (int k = 0; k < 4; k++) {
                 regular += edges[m->origin[corner[k]]] == 4;
             }
-            good += regular >= REGULAR_CORNERS;
+            good += regular >= REGULAR_CORNERS && matching->score[h] >= good_score;
         }
     }
     *fraction = triangles > 0 ? (double)good / (double)triangles : 0.0;
@@ -126,14 +138,19 @@ static sl_status measure(const sl_matching *matching, double *fraction)
 sl_status sl_pair_triangles(const sl_mesh *mesh, int32_t *partner, double *paired_fraction)
 {
     sl_status status = SL_OK;
-    double *score = sl_alloc(mesh->nh, sizeof *score);
-    candidate *list = sl_alloc(mesh->nh / 2, sizeof *list);
+    candidate *list = NULL;
+    double *score = sl_alloc(mesh->nh, sizeof *score), *belief = sl_alloc(mesh->nh, sizeof *belief);
     sl_matching matching = {mesh, score, sl_alloc(mesh->nf, sizeof *matching.mate)};
-    SL_TRY(score != NULL && list != NULL && matching.mate != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(score != NULL && belief != NULL && matching.mate != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     for (int32_t f = 0; f < mesh->nf; f++) {
         matching.mate[f] = -1;
     }
-    match_greedily(&matching, list, find_candidates(mesh, score, list));
+    const int32_t n = score_edges(mesh, score);
+    list = sl_alloc(n, sizeof *list);
+    SL_TRY(list != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(sl_pair_beliefs(mesh, score, belief));
+    list_candidates(&matching, belief, list);
+    match_greedily(&matching, list, n);
     SL_TRY(sl_matching_augment(&matching));
     SL_TRY(measure(&matching, paired_fraction));
     for (int32_t f = 0; f < mesh->nf; f++) {
@@ -141,6 +158,7 @@ sl_status sl_pair_triangles(const sl_mesh *mesh, int32_t *partner, double *paire
     }
 cleanup:
     sl_free(score);
+    sl_free(belief);
     sl_free(list);
     sl_free(matching.mate);
     return status;

@@ -20,6 +20,14 @@ typedef struct sl_matching {
  * triangles of positive area. */
 double sl_pair_score(const sl_mesh *mesh, int32_t h);
 
+/* How clearly the edge of h belongs to the matching of largest total weight: > 0 in it, < 0 not in it, by max-product
+ * message passing; -infinity for edges that are no candidates. belief: nh, equal for twins up to rounding. Exact after
+ * enough rounds where the linear relaxation of the matching is; else a good order for rounding it greedily. O(nh) a
+ * round. Source: Bayati, Shah, Sharma 2008, "Max-product for maximum weight matching"; Sanghavi, Malioutov, Willsky
+ * 2011, "Belief propagation and LP relaxation for weighted matching in general graphs". Deviations: damped, rounds
+ * bounded. */
+SL_NODISCARD sl_status sl_pair_beliefs(const sl_mesh *mesh, const double *score, double *belief);
+
 /* Pairs more triangles along alternating paths while that is possible within a bounded search around each free one. */
 SL_NODISCARD sl_status sl_matching_augment(sl_matching *matching);
 
