@@ -1,0 +1,610 @@
+/* The ABF++ solver against dense Newton steps and the conditions of a constrained minimum. */
+#include "param/abf.h"
+
+#include <lapacke.h>
+
+#include "param/abf_charts.h"
+#include "param/abf_internal.h"
+
+#define PI TEST_PI
+
+static sl_abf *make_solver(const sl_patch *patch, const sl_abf_def *def)
+{
+    sl_abf *solver = NULL;
+    assert_int_equal(sl_abf_create(patch, def, &solver), SL_OK);
+    return solver;
+}
+
+static sl_abf *solve(const sl_patch *patch, const sl_abf_def *def)
+{
+    sl_abf *solver = make_solver(patch, def);
+    assert_int_equal(sl_abf_step(solver, def->max_iterations, NULL), SL_OK);
+    return solver;
+}
+
+/* All constraints of a patch (g1, g2, g3 one after the other) and their number. */
+static int32_t constraints(const sl_patch *patch, const sl_abf_def *def, const sl_sectors *sectors, const double *alpha,
+                           double *g)
+{
+    sl_abf_eval_g1(patch, alpha, g);
+    sl_abf_eval_g2(sectors, alpha, &g[patch->nt]);
+    sl_abf_eval_g3(patch, def->wheel, alpha, &g[patch->nt + sectors->count]);
+    return patch->nt + sectors->count + chart_interior(patch);
+}
+
+/* Dense Jacobian of all constraints by central differences: column-major ng x nc. Fourth order. */
+static double *difference_jacobian(const sl_patch *patch, const sl_abf_def *def, const sl_sectors *sectors,
+                                   const double *alpha, int32_t *ng)
+{
+    static const double offset[4] = {-2.0, -1.0, 1.0, 2.0}, weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+    const int32_t nc = 3 * patch->nt;
+    const size_t n = (size_t)(patch->nt + sectors->count + chart_interior(patch));
+    double *J = calloc(n * (size_t)nc, sizeof *J), *x = malloc((size_t)nc * sizeof *x), *g = malloc(n * sizeof *g);
+    memcpy(x, alpha, (size_t)nc * sizeof *x);
+    for (int32_t c = 0; c < nc; c++) {
+        const double h = 2e-3 * alpha[c];
+        for (int k = 0; k < 4; k++) {
+            x[c] = alpha[c] + offset[k] * h;
+            *ng = constraints(patch, def, sectors, x, g);
+            for (size_t r = 0; r < n; r++) {
+                J[(size_t)c * n + r] += weight[k] * g[r] / h;
+            }
+        }
+        x[c] = alpha[c];
+    }
+    free(x);
+    free(g);
+    return J;
+}
+
+/* Solves the full system [Lambda J'; J 0] [dalpha; lambda_new] = [-2 w (alpha - phi); -g] densely: one step from alpha,
+ * whatever the old multipliers. out: nc + ng. */
+static double *dense_step(const sl_patch *patch, const sl_abf_def *def, const sl_sectors *sectors, const double *alpha,
+                          int32_t *total)
+{
+    const int32_t nc = 3 * patch->nt;
+    int32_t ng;
+    double *J = difference_jacobian(patch, def, sectors, alpha, &ng);
+    const size_t n = (size_t)(nc + ng);
+    double *K = calloc(n * n, sizeof *K), *rhs = calloc(n, sizeof *rhs);
+    double *phi = malloc((size_t)nc * sizeof *phi), *w = malloc((size_t)nc * sizeof *w);
+    lapack_int *pivot = malloc(n * sizeof *pivot);
+    sl_abf_targets(patch, def, phi, w);
+    for (size_t c = 0; c < (size_t)nc; c++) {
+        K[c * n + c] = 2.0 * w[c];
+        rhs[c] = -2.0 * w[c] * (alpha[c] - phi[c]);
+        for (size_t r = 0; r < (size_t)ng; r++) {
+            K[c * n + (size_t)nc + r] = K[((size_t)nc + r) * n + c] = J[c * (size_t)ng + r];
+        }
+    }
+    constraints(patch, def, sectors, alpha, &rhs[nc]);
+    for (size_t r = (size_t)nc; r < n; r++) {
+        rhs[r] = -rhs[r];
+    }
+    assert_int_equal(LAPACKE_dgesv(LAPACK_COL_MAJOR, (lapack_int)n, 1, K, (lapack_int)n, pivot, rhs, (lapack_int)n), 0);
+    free(J);
+    free(K);
+    free(phi);
+    free(w);
+    free(pivot);
+    *total = (int32_t)n;
+    return rhs;
+}
+
+/* Default sectors, or: an interior vertex's turn split into two unequal halves, and a border vertex's angle set. */
+static sl_sector_table make_sectors(const sl_patch *patch, bool constrained)
+{
+    sl_sector_table table;
+    assert_int_equal(sl_sectors_interior(patch, &table), SL_OK);
+    if (!constrained) {
+        return table;
+    }
+    const int32_t n = table.view.count, corners = table.first[n];
+    int32_t valence = 0, c, border = 0;
+    sl_sector_table out = {.first = malloc((size_t)(n + 3) * sizeof *out.first),
+                           .corner = malloc((size_t)(corners + 9) * sizeof *out.corner),
+                           .theta = malloc((size_t)(n + 2) * sizeof *out.theta)};
+    memcpy(out.corner, table.corner, (size_t)corners * sizeof *out.corner);
+    out.first[0] = 0;
+    out.first[1] = 2; /* the first vertex: two corners share pi, the others pi */
+    out.theta[0] = out.theta[1] = PI;
+    for (int32_t s = 1; s < n; s++) {
+        out.first[s + 1] = table.first[s];
+        out.theta[s + 1] = 2.0 * PI;
+    }
+    out.first[n + 1] = corners;
+    while (patch->border[border] == 0 || valence < 2 || valence > 8) { /* a border vertex of several triangles */
+        border++;
+        valence = 0;
+        for (c = patch->outgoing[border]; c >= 0 && valence < 9 && patch->border[border] != 0;
+             c = sl_corner_rotate(patch, c)) {
+            out.corner[corners + valence++] = c;
+        }
+    }
+    out.first[n + 2] = corners + valence;
+    out.theta[n + 1] = 0.83 * PI;
+    out.view = (sl_sectors){n + 2, out.first, out.corner, out.theta};
+    assert_int_equal(sl_sectors_check(patch, &out.view, NULL), SL_OK);
+    sl_sectors_clear(&table);
+    return out;
+}
+
+/* Every step of the solver is the dense one, as long as it is not damped. */
+static void check_steps(sl_patch *patch, const sl_abf_def *base, bool constrained)
+{
+    sl_sector_table table = make_sectors(patch, constrained);
+    sl_abf_def def = *base;
+    def.sectors = &table.view;
+    sl_abf *solver = make_solver(patch, &def);
+    const int32_t nc = 3 * patch->nt;
+    double *before = malloc((size_t)nc * sizeof *before);
+    for (int step = 0; step < 3; step++) {
+        int32_t total;
+        memcpy(before, sl_abf_angles(solver), (size_t)nc * sizeof *before);
+        double *dense = dense_step(patch, &def, &table.view, before, &total);
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        const sl_abf_info *info = sl_abf_info_of(solver);
+        if (info->step < 1.0) {
+            free(dense);
+            break;
+        }
+        const double *after = sl_abf_angles(solver);
+        for (int32_t c = 0; c < nc; c++) {
+            assert_true(test_near(after[c] - before[c], dense[c], 1e-7));
+        }
+        const sl_abf_view view = sl_abf_view_of(solver);
+        for (int32_t t = 0; t < patch->nt; t++) {
+            assert_true(test_near(view.lambda1[t], dense[nc + t], 1e-5 * (1.0 + fabs(dense[nc + t]))));
+        }
+        for (int32_t r = 0; r < total - nc - patch->nt; r++) {
+            const double expected = dense[nc + patch->nt + r];
+            assert_true(test_near(view.lambda2[r], expected, 1e-5 * (1.0 + fabs(expected))));
+        }
+        free(dense);
+    }
+    assert_true(sl_abf_info_of(solver)->iterations >= 1);
+    sl_abf_free(solver);
+    sl_sectors_clear(&table);
+    free(before);
+    sl_patch_free(patch);
+}
+
+static void newton_steps_match_a_dense_solve_of_the_full_system(void **state)
+{
+    (void)state;
+    sl_abf_def def = sl_abf_default();
+    check_steps(chart_grid(4, 4, 0.15, chart_bumps, 1.0, 11), &def, false);
+    check_steps(chart_hexagon(2, 0.15, chart_cap, 1.3, 12), &def, false);
+    def.energy = SL_ABF_UNWEIGHTED;
+    check_steps(chart_hexagon(2, 0.15, chart_cap, 1.0, 13), &def, false);
+    def.wheel = SL_ABF_PRODUCT;
+    check_steps(chart_grid(4, 3, 0.15, chart_bumps, 1.0, 14), &def, false);
+}
+
+static void newton_steps_with_split_and_border_sectors_match_a_dense_solve(void **state)
+{
+    (void)state;
+    const sl_abf_def def = sl_abf_default();
+    check_steps(chart_hexagon(2, 0.1, chart_cap, 0.8, 21), &def, true);
+    check_steps(chart_grid(4, 4, 0.1, chart_bumps, 0.6, 22), &def, true);
+}
+
+/* Largest entry of 2 w (alpha - phi) + J' lambda with a Jacobian by differences, and of g. */
+static void check_optimal(const sl_patch *patch, const sl_abf_def *def, const sl_sectors *sectors, const sl_abf *solver)
+{
+    const sl_abf_view view = sl_abf_view_of(solver);
+    const double *alpha = sl_abf_angles(solver);
+    int32_t ng;
+    double *J = difference_jacobian(patch, def, sectors, alpha, &ng);
+    double *g = malloc((size_t)ng * sizeof *g);
+    constraints(patch, def, sectors, alpha, g);
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        double gradient = 2.0 * view.w[c] * (alpha[c] - view.phi[c]);
+        for (int32_t r = 0; r < ng; r++) {
+            const double lambda = r < patch->nt ? view.lambda1[r] : view.lambda2[r - patch->nt];
+            gradient += lambda * J[(size_t)c * (size_t)ng + (size_t)r];
+        }
+        assert_true(test_near(gradient, view.gradient[c], 2e-7));
+        assert_true(fabs(gradient) <= def->accept_gradient);
+        assert_true(alpha[c] > 0.0 && alpha[c] < PI);
+    }
+    for (int32_t r = 0; r < ng; r++) {
+        assert_true(fabs(g[r]) <= def->constraint_tolerance);
+    }
+    free(J);
+    free(g);
+}
+
+static void converged_angles_satisfy_the_conditions_of_a_minimum(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 6; seed++) {
+        sl_patch *patches[] = {chart_grid(5, 4, 0.2, chart_bumps, 1.2, seed),
+                               chart_hexagon(3, 0.15, chart_cap, PI / 2, seed),
+                               chart_hexagon(2, 0.15, chart_cone, 1.5, seed)};
+        for (size_t i = 0; i < SL_COUNTOF(patches); i++) {
+            sl_sector_table table = make_sectors(patches[i], seed % 2 == 0 && i == 0);
+            sl_abf_def def = sl_abf_default();
+            def.energy = seed % 3 == 0 ? SL_ABF_UNWEIGHTED : SL_ABF_WEIGHTED;
+            def.sectors = &table.view;
+            sl_abf *solver = solve(patches[i], &def);
+            assert_true(sl_abf_info_of(solver)->converged);
+            assert_true(sl_abf_info_of(solver)->iterations >= 2);
+            check_optimal(patches[i], &def, &table.view, solver);
+            sl_abf_free(solver);
+            sl_sectors_clear(&table);
+            sl_patch_free(patches[i]);
+        }
+    }
+}
+
+/* With the gradient of E + lambda' g differenced as a scalar, away from the solution: energy, multipliers, all at once.
+ */
+static void gradient_of_the_lagrangian_matches_finite_differences(void **state)
+{
+    (void)state;
+    for (int product = 0; product < 2; product++) {
+        sl_patch *patch = chart_hexagon(2, 0.2, chart_cap, 1.4, 0x1a);
+        sl_sector_table table = make_sectors(patch, true);
+        sl_abf_def def = sl_abf_default();
+        def.wheel = product != 0 ? SL_ABF_PRODUCT : SL_ABF_LOG;
+        def.sectors = &table.view;
+        sl_abf *solver = make_solver(patch, &def);
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        const sl_abf_view view = sl_abf_view_of(solver);
+        const int32_t nc = 3 * patch->nt;
+        double *x = malloc((size_t)nc * sizeof *x), *g = malloc(2 * (size_t)nc * sizeof *g), largest = 0.0;
+        memcpy(x, sl_abf_angles(solver), (size_t)nc * sizeof *x);
+        for (int32_t c = 0; c < nc; c++) {
+            const double h = 1e-5, a = x[c];
+            double value[2] = {0.0, 0.0};
+            for (int side = 0; side < 2; side++) {
+                x[c] = side == 0 ? a - h : a + h;
+                const int32_t ng = constraints(patch, &def, &table.view, x, g);
+                value[side] = view.w[c] * (x[c] - view.phi[c]) * (x[c] - view.phi[c]);
+                for (int32_t r = 0; r < ng; r++) {
+                    value[side] += g[r] * (r < patch->nt ? view.lambda1[r] : view.lambda2[r - patch->nt]);
+                }
+            }
+            x[c] = a;
+            assert_true(test_near(view.gradient[c], (value[1] - value[0]) / (2.0 * h), 1e-7));
+            largest = fmax(largest, fabs(view.gradient[c]));
+        }
+        assert_true(largest > 1e-4);
+        assert_true(test_near(sl_abf_info_of(solver)->gradient, largest, 0.0));
+        sl_abf_free(solver);
+        sl_sectors_clear(&table);
+        free(x);
+        free(g);
+        sl_patch_free(patch);
+    }
+}
+
+static void flat_charts_stay_as_they_are(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        sl_patch *patch = chart_grid(7, 6, 0.3, chart_plane, 0.4, seed);
+        const sl_abf_def def = sl_abf_default();
+        double *beta = malloc(3 * (size_t)patch->nt * sizeof *beta);
+        sl_corner_angles(patch, beta);
+        sl_abf *solver = solve(patch, &def);
+        const sl_abf_info *info = sl_abf_info_of(solver);
+        assert_true(info->converged && !info->stalled && info->iterations == 0 && info->energy < 1e-20);
+        assert_true(chart_max_diff(sl_abf_angles(solver), beta, 3 * patch->nt) <= 1e-13);
+        sl_abf_free(solver);
+        free(beta);
+        sl_patch_free(patch);
+    }
+}
+
+/* A cone is developable but for its apex: everywhere else the optimum is near, at the apex the turn is made up. */
+static void info_tells_what_the_angles_say(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(4, 0.2, chart_cone, 0.9, 0x1f0);
+    const sl_abf_def def = sl_abf_default();
+    sl_abf *solver = make_solver(patch, &def);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    assert_int_equal(info->iterations, 0);
+    assert_true(!info->converged && info->g1 > 1e-3);
+    for (int32_t i = 1; !info->converged && i < 20; i++) {
+        const sl_abf_view view = sl_abf_view_of(solver);
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        assert_int_equal(info->iterations, i);
+        const double *alpha = sl_abf_angles(solver);
+        double energy = 0.0, smallest = 4.0, g1[96], g2[37], g3[37], zero[96] = {0};
+        for (int32_t c = 0; c < 3 * patch->nt; c++) {
+            energy += view.w[c] * (alpha[c] - view.phi[c]) * (alpha[c] - view.phi[c]);
+            smallest = fmin(smallest, alpha[c]);
+        }
+        sl_abf_eval_g1(patch, alpha, g1);
+        sl_abf_eval_g2(view.system->sectors, alpha, g2);
+        sl_abf_eval_g3(patch, SL_ABF_LOG, alpha, g3);
+        assert_int_equal(view.system->nsectors, 37);
+        assert_true(test_near(info->energy, energy, 1e-12 * energy) && info->min_angle == smallest);
+        assert_true(info->g1 == chart_max_diff(g1, zero, 96) && info->g2 == chart_max_diff(g2, zero, 37));
+        assert_true(info->g3 == chart_max_diff(g3, zero, 37) && info->step == 1.0);
+    }
+    assert_true(info->converged && info->gradient <= def.gradient_tolerance);
+    sl_abf_free(solver);
+    sl_patch_free(patch);
+}
+
+static void steps_taken_singly_give_the_same_bytes(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(5, 0.2, chart_cap, PI / 2, 0x5b);
+    const sl_abf_def def = sl_abf_default();
+    sl_abf *at_once = solve(patch, &def), *singly = make_solver(patch, &def);
+    for (int i = 0; i < 40; i++) {
+        assert_int_equal(sl_abf_step(singly, 1, NULL), SL_OK);
+    }
+    assert_memory_equal(sl_abf_angles(at_once), sl_abf_angles(singly), 3 * (size_t)patch->nt * sizeof(double));
+    assert_int_equal(sl_abf_info_of(at_once)->iterations, sl_abf_info_of(singly)->iterations);
+    assert_true(sl_abf_info_of(at_once)->converged);
+    sl_abf_free(at_once);
+    sl_abf_free(singly);
+    sl_patch_free(patch);
+}
+
+static void log_and_product_form_find_the_same_angles(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        sl_patch *patch = chart_grid(5, 5, 0.15, chart_bumps, 0.8, seed);
+        sl_abf_def def = sl_abf_default();
+        sl_abf *log_form = solve(patch, &def);
+        def.wheel = SL_ABF_PRODUCT;
+        def.constraint_tolerance = 1e-11; /* products of sines are small themselves */
+        sl_abf *product = solve(patch, &def);
+        assert_true(sl_abf_info_of(log_form)->converged && sl_abf_info_of(product)->converged);
+        assert_true(chart_max_diff(sl_abf_angles(log_form), sl_abf_angles(product), 3 * patch->nt) <= 1e-6);
+        sl_abf_free(log_form);
+        sl_abf_free(product);
+        sl_patch_free(patch);
+    }
+}
+
+static void angles_do_not_change_when_the_chart_is_moved_or_scaled(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        sl_patch *patch = chart_hexagon(4, 0.2, chart_cap, 1.3, seed);
+        const sl_abf_def def = sl_abf_default();
+        sl_abf *original = solve(patch, &def);
+        for (int32_t i = 0; i < 3 * patch->nv; i++) {
+            patch->xyz[i] *= 0x1p-37;
+        }
+        sl_abf *scaled = solve(patch, &def);
+        assert_memory_equal(sl_abf_angles(original), sl_abf_angles(scaled), 3 * (size_t)patch->nt * sizeof(double));
+        chart_move(patch, 0x1p39, (double[]){0.3, -1.7, 5.1});
+        sl_abf *moved = solve(patch, &def);
+        assert_true(chart_max_diff(sl_abf_angles(original), sl_abf_angles(moved), 3 * patch->nt) <= 1e-9);
+        sl_abf_free(original);
+        sl_abf_free(scaled);
+        sl_abf_free(moved);
+        sl_patch_free(patch);
+    }
+}
+
+/* Border angles whose sum contradicts Gauss-Bonnet: never converges, angles stay positive, and says so. */
+static void impossible_border_angles_are_reported_as_not_converged(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(3, 0.1, chart_cap, 0.7, 0x1b);
+    sl_sector_table table = make_sectors(patch, false);
+    int32_t first[64], corner[3 * 54], n = table.view.count;
+    double theta[64];
+    memcpy(first, table.first, (size_t)(n + 1) * sizeof *first);
+    memcpy(corner, table.corner, (size_t)first[n] * sizeof *corner);
+    memcpy(theta, table.theta, (size_t)n * sizeof *theta);
+    for (int32_t v = 0; v < patch->nv; v++) {
+        if (patch->border[v] != 0) {
+            first[n + 1] = first[n];
+            for (int32_t c = patch->outgoing[v]; c >= 0; c = sl_corner_rotate(patch, c)) {
+                corner[first[n + 1]++] = c;
+            }
+            theta[n++] = 0.5 * PI; /* 18 right angles */
+        }
+    }
+    const sl_sectors sectors = {n, first, corner, theta};
+    sl_abf_def def = sl_abf_default();
+    def.sectors = &sectors;
+    sl_abf *solver = solve(patch, &def);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    assert_false(info->converged);
+    assert_true(info->min_angle > 0.0 && isfinite(info->energy));
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        assert_true(sl_abf_angles(solver)[c] > 0.0 && sl_abf_angles(solver)[c] < PI);
+    }
+    sl_abf_free(solver);
+    sl_sectors_clear(&table);
+    sl_patch_free(patch);
+}
+
+/* One triangle, one of its angles asked to be more than a triangle has: the step shrinks until nothing moves. */
+static void an_angle_beyond_pi_stalls_with_positive_angles(void **state)
+{
+    (void)state;
+    static const int32_t first[] = {0, 1}, corner[] = {1};
+    static const double theta[] = {3.3}, xyz[] = {0.1, 0.2, 0.3, 1.2, 0.1, 0.4, 0.5, 0.9, 0.2};
+    static const int32_t tri[] = {0, 1, 2};
+    const sl_sectors sectors = {1, first, corner, theta};
+    sl_patch *patch = chart_make(3, xyz, 1, tri);
+    sl_abf_def def = sl_abf_default();
+    def.sectors = &sectors;
+    sl_abf *solver = solve(patch, &def);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    assert_true(info->stalled && !info->converged && info->min_angle > 0.0 && info->iterations < def.max_iterations);
+    double last[3];
+    memcpy(last, sl_abf_angles(solver), sizeof last);
+    assert_int_equal(sl_abf_step(solver, 5, NULL), SL_OK); /* a stalled solver stays where it is */
+    assert_memory_equal(last, sl_abf_angles(solver), sizeof last);
+    sl_abf_free(solver);
+    sl_patch_free(patch);
+}
+
+/* The same sector twice: no full rank, the factorisation fails or the result is right all the same. */
+static void dependent_sectors_stall_or_converge_but_never_lie(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(2, 0.1, chart_cap, 0.7, 0xde);
+    static const int32_t first[] = {0, 2, 4}, corner[] = {4, 9, 4, 9};
+    for (int contradictory = 0; contradictory < 2; contradictory++) {
+        const double theta[] = {2.1, contradictory != 0 ? 2.2 : 2.1};
+        const sl_sectors sectors = {2, first, corner, theta};
+        sl_abf_def def = sl_abf_default();
+        def.sectors = &sectors;
+        sl_abf *solver = solve(patch, &def);
+        const sl_abf_info *info = sl_abf_info_of(solver);
+        const double sum = sl_abf_angles(solver)[4] + sl_abf_angles(solver)[9];
+        assert_true(info->converged ? fabs(sum - 2.1) < 1e-9 && contradictory == 0 : info->g2 > 0.0);
+        assert_true(info->min_angle > 0.0);
+        sl_abf_free(solver);
+    }
+    sl_patch_free(patch);
+}
+
+static void a_prescribed_border_angle_is_met(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(4, 0.1, chart_cap, 0.9, 0xb0);
+    sl_sector_table table = make_sectors(patch, true);
+    sl_abf_def def = sl_abf_default();
+    def.sectors = &table.view;
+    sl_abf *solver = solve(patch, &def);
+    assert_true(sl_abf_info_of(solver)->converged);
+    const int32_t s = table.view.count - 1;
+    double sum = 0.0;
+    for (int32_t p = table.first[s]; p < table.first[s + 1]; p++) {
+        sum += sl_abf_angles(solver)[table.corner[p]];
+    }
+    assert_true(test_near(sum, 0.83 * PI, 1e-12));
+    sl_abf_free(solver);
+    sl_sectors_clear(&table);
+    sl_patch_free(patch);
+}
+
+static void an_iteration_limit_accepts_only_small_gradients(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(4, 0.2, chart_cap, 1.2, 0x11);
+    sl_abf_def def = sl_abf_default();
+    def.max_iterations = 1;
+    sl_abf *solver = solve(patch, &def);
+    assert_false(sl_abf_info_of(solver)->converged);
+    assert_int_equal(sl_abf_info_of(solver)->iterations, 1);
+    sl_abf_free(solver);
+    def.max_iterations = 4;
+    def.gradient_tolerance = 0.0; /* never met: the bound ends it, and it is good enough */
+    def.accept_gradient = 1e-2;
+    def.constraint_tolerance = 1e-4;
+    solver = solve(patch, &def);
+    assert_true(sl_abf_info_of(solver)->converged);
+    assert_int_equal(sl_abf_info_of(solver)->iterations, 4);
+    sl_abf_free(solver);
+    sl_patch_free(patch);
+}
+
+static void create_refuses_unusable_sectors(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(2, 0.1, chart_cap, 0.7, 0xce);
+    static const int32_t empty[] = {0, 0}, first[] = {0, 1}, corner[] = {72};
+    static const double theta[] = {1.0};
+    sl_abf_def def = sl_abf_default();
+    sl_abf *solver = (sl_abf *)&def;
+    def.sectors = &(sl_sectors){1, empty, corner, theta};
+    assert_int_equal(sl_abf_create(patch, &def, &solver), SL_INFEASIBLE);
+    assert_null(solver);
+    def.sectors = &(sl_sectors){1, first, corner, theta};
+    assert_int_equal(sl_abf_create(patch, &def, &solver), SL_BAD_INPUT);
+    sl_abf_free(NULL);
+    sl_patch_free(patch);
+}
+
+static void cancelling_keeps_the_angles_of_the_last_step(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(4, 0.2, chart_cap, 1.2, 0xca);
+    const sl_abf_def def = sl_abf_default();
+    int left = 2;
+    const sl_context context = {.progress = chart_cancel_after, .progress_user = &left};
+    sl_abf *solver = make_solver(patch, &def), *two = make_solver(patch, &def);
+    assert_int_equal(sl_abf_step(solver, 40, &context), SL_CANCELLED);
+    assert_int_equal(sl_abf_step(two, 2, NULL), SL_OK);
+    assert_int_equal(sl_abf_info_of(solver)->iterations, 2);
+    assert_memory_equal(sl_abf_angles(solver), sl_abf_angles(two), 3 * (size_t)patch->nt * sizeof(double));
+    sl_abf_free(solver);
+    sl_abf_free(two);
+    sl_patch_free(patch);
+}
+
+/* Charts without interior vertices have only g1. */
+static void strips_converge_at_once(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_grid(9, 1, 0.2, chart_bumps, 2.0, 0x57);
+    const sl_abf_def def = sl_abf_default();
+    sl_abf_info info;
+    double uv[40];
+    assert_int_equal(sl_abf_flatten(patch, &def, NULL, uv, &info), SL_OK);
+    assert_true(info.converged && info.energy < 1e-20);
+    double beta[54], alpha[54];
+    sl_corner_angles(patch, beta);
+    chart_uv_angles(patch, uv, alpha);
+    assert_true(chart_max_diff(alpha, beta, 3 * patch->nt) <= 1e-12);
+    sl_patch_free(patch);
+}
+
+static void flatten_lays_out_the_solved_angles(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        sl_patch *patch = chart_hexagon(6, 0.2, chart_cap, PI / 2, seed);
+        const size_t nc = 3 * (size_t)patch->nt;
+        const sl_abf_def def = sl_abf_default();
+        sl_abf *solver = solve(patch, &def);
+        double *uv = malloc(2 * (size_t)patch->nv * sizeof *uv), *alpha = malloc(nc * sizeof *alpha);
+        sl_abf_info info;
+        assert_int_equal(sl_abf_flatten(patch, &def, NULL, uv, &info), SL_OK);
+        assert_memory_equal(&info.energy, &sl_abf_info_of(solver)->energy, sizeof info.energy);
+        assert_true(info.converged);
+        chart_uv_angles(patch, uv, alpha);
+        assert_true(chart_max_diff(alpha, sl_abf_angles(solver), (int64_t)nc) <= 1e-9);
+        assert_true(test_near_rel(chart_uv_area(patch, uv), chart_area(patch), 1e-13));
+        int left = 1;
+        const sl_context context = {.progress = chart_cancel_after, .progress_user = &left};
+        assert_int_equal(sl_abf_flatten(patch, &def, &context, uv, NULL), SL_CANCELLED);
+        sl_abf_free(solver);
+        free(uv);
+        free(alpha);
+        sl_patch_free(patch);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(newton_steps_match_a_dense_solve_of_the_full_system),
+        cmocka_unit_test(newton_steps_with_split_and_border_sectors_match_a_dense_solve),
+        cmocka_unit_test(converged_angles_satisfy_the_conditions_of_a_minimum),
+        cmocka_unit_test(gradient_of_the_lagrangian_matches_finite_differences),
+        cmocka_unit_test(flat_charts_stay_as_they_are),
+        cmocka_unit_test(info_tells_what_the_angles_say),
+        cmocka_unit_test(steps_taken_singly_give_the_same_bytes),
+        cmocka_unit_test(log_and_product_form_find_the_same_angles),
+        cmocka_unit_test(angles_do_not_change_when_the_chart_is_moved_or_scaled),
+        cmocka_unit_test(impossible_border_angles_are_reported_as_not_converged),
+        cmocka_unit_test(an_angle_beyond_pi_stalls_with_positive_angles),
+        cmocka_unit_test(dependent_sectors_stall_or_converge_but_never_lie),
+        cmocka_unit_test(a_prescribed_border_angle_is_met),
+        cmocka_unit_test(an_iteration_limit_accepts_only_small_gradients),
+        cmocka_unit_test(create_refuses_unusable_sectors),
+        cmocka_unit_test(cancelling_keeps_the_angles_of_the_last_step),
+        cmocka_unit_test(strips_converge_at_once),
+        cmocka_unit_test(flatten_lays_out_the_solved_angles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
