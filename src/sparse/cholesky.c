@@ -238,6 +238,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     }
     F->n = A->ncols;
     F->pattern_nnz = A->colptr[A->ncols];
+    F->pattern_hash = sl_pattern_hash(A);
     F->pivot_rtol = def->pivot_rtol;
     F->perm = sl_alloc(F->n, sizeof *F->perm);
     SL_TRY(F->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);

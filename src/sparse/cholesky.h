@@ -23,7 +23,8 @@ sl_cholesky_def sl_cholesky_default(void);
 SL_NODISCARD sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_cholesky **out);
 
 /* Numeric phase; call again when values change but the pattern does not. SL_NOT_POSITIVE_DEFINITE sets *bad_column
- * (nullable) to the column of A at fault; F may then be refactored or freed. SL_BAD_INPUT: a value is not finite. */
+ * (nullable) to the column of A at fault; F may then be refactored or freed. SL_BAD_INPUT: a value is not finite, or
+ * the pattern is another. Allocates nothing. */
 SL_NODISCARD sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column);
 
 /* X: n x nrhs, column-major, leading dimension n; B on entry, inv(A) B on return. work: sl_cholesky_work_size(F, nrhs)

@@ -13,7 +13,8 @@
  * postorder. */
 struct sl_cholesky {
     int32_t n;
-    int64_t pattern_nnz; /* of A's lower triangle */
+    int64_t pattern_nnz;   /* of A's lower triangle */
+    uint64_t pattern_hash; /* so that values are not put into another pattern */
     double pivot_rtol;
     int32_t *perm; /* n: row k of P A P' is row perm[k] of A */
 
@@ -33,6 +34,19 @@ struct sl_cholesky {
     int32_t *child;    /* supernodes: last child, -1 = leaf */
     int32_t *sibling;  /* supernodes: next child of the same parent */
 };
+
+/* FNV-1a over the pointers and rows of A. */
+static inline uint64_t sl_pattern_hash(const sl_csc *A)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (int32_t j = 0; j < A->ncols; j++) {
+        hash = (hash ^ (uint64_t)A->colptr[j + 1]) * 0x100000001b3u;
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            hash = (hash ^ (uint64_t)A->row[p]) * 0x100000001b3u;
+        }
+    }
+    return hash;
+}
 
 static inline int32_t sl_supernode_width(const sl_cholesky *F, int32_t s)
 {

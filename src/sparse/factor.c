@@ -152,7 +152,9 @@ static int32_t factor_supernode(sl_cholesky *F, int32_t s, double least, int64_t
 sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column)
 {
     double largest;
-    if (A->ncols != F->n || A->nrows != F->n || A->colptr[F->n] != F->pattern_nnz || !scatter_values(F, A, &largest)) {
+    const bool same_pattern = A->ncols == F->n && A->nrows == F->n && A->colptr[F->n] == F->pattern_nnz &&
+                              sl_pattern_hash(A) == F->pattern_hash;
+    if (!same_pattern || !scatter_values(F, A, &largest)) {
         return SL_BAD_INPUT;
     }
     int64_t top = 0;

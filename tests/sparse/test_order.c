@@ -1,0 +1,269 @@
+#include "matrices.h"
+
+#include "sparse/cholesky.h"
+#include "sparse/dissection.h"
+#include "sparse/order.h"
+
+static const sl_ordering orderings[] = {SL_ORDER_AUTO, SL_ORDER_NATURAL, SL_ORDER_CAMD, SL_ORDER_NESTED_DISSECTION};
+
+/* side x side grid with `twins` unknowns at each point, all twins of neighbours joined; node (x, y, k) has the number
+ * number[(y * side + x) * twins + k]. */
+typedef struct grid {
+    int32_t side, twins, n;
+    int32_t *number;
+    double *xyz;
+    sl_adjacency graph;
+} grid;
+
+static grid grid_create(int32_t side, int32_t twins, test_rng *rng)
+{
+    grid g = {.side = side, .twins = twins, .n = side * side * twins};
+    g.number = sl_alloc(g.n, sizeof *g.number);
+    g.xyz = sl_alloc(3 * (int64_t)g.n, sizeof *g.xyz);
+    g.graph.n = g.n;
+    g.graph.first = sl_calloc((int64_t)g.n + 1, sizeof *g.graph.first);
+    g.graph.adj = sl_alloc(5 * (int64_t)g.n * twins, sizeof *g.graph.adj);
+    int32_t *point = sl_alloc(g.n, sizeof *point);
+    assert_true(g.number && g.xyz && g.graph.first && g.graph.adj && point);
+    for (int32_t i = 0; i < g.n; i++) {
+        const int32_t k = test_index(rng, i + 1);
+        g.number[i] = g.number[k];
+        g.number[k] = i;
+    }
+    for (int32_t i = 0; i < side * side; i++) {
+        const double p[3] = {i % side + test_uniform(rng, -0.3, 0.3), i / side + test_uniform(rng, -0.3, 0.3),
+                             test_uniform(rng, 0.0, 1.0)};
+        for (int32_t k = 0; k < twins; k++) {
+            const int32_t node = g.number[i * twins + k];
+            memcpy(g.xyz + 3 * node, p, sizeof p);
+            point[node] = i;
+        }
+    }
+    int64_t filled = 0;
+    for (int32_t v = 0; v < g.n; v++) {
+        for (int32_t w = 0; w < g.n; w++) {
+            const int32_t dx = abs(point[v] % side - point[w] % side), dy = abs(point[v] / side - point[w] / side);
+            if (v != w && dx + dy <= 1) {
+                g.graph.adj[filled++] = w;
+            }
+        }
+        g.graph.first[v + 1] = filled;
+    }
+    sl_free(point);
+    return g;
+}
+
+static void grid_clear(grid *g)
+{
+    sl_free(g->number);
+    sl_free(g->xyz);
+    sl_adjacency_clear(&g->graph);
+}
+
+static void every_ordering_is_a_permutation(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x0bde);
+    const int32_t sizes[] = {0, 1, 2, 5, 161, 700};
+    for (int kind = 0; kind < MATRIX_KINDS; kind++) {
+        for (size_t z = 0; z < SL_COUNTOF(sizes); z++) {
+            sl_csc *A = random_spd((matrix_kind)kind, sizes[z], 0.3, &rng);
+            const int32_t n = A->ncols;
+            double *xyz = random_doubles(3 * (int64_t)n, &rng);
+            int32_t *perm = sl_alloc(n, sizeof *perm), *again = sl_alloc(n, sizeof *again);
+            assert_true(perm != NULL && again != NULL);
+            for (size_t o = 0; o < 2 * SL_COUNTOF(orderings); o++) {
+                const double *points = o % 2 == 0 ? xyz : NULL;
+                assert_int_equal(sl_order(A, orderings[o / 2], points, perm), SL_OK);
+                assert_permutation(perm, n);
+                assert_int_equal(sl_order(A, orderings[o / 2], points, again), SL_OK);
+                assert_memory_equal(perm, again, (size_t)n * sizeof *perm);
+            }
+            sl_free(xyz);
+            sl_free(perm);
+            sl_free(again);
+            sl_csc_free(A);
+        }
+    }
+}
+
+/* Size of the part of the graph without `removed` pieces that start lies in; seen marks it. */
+static int32_t flood(const sl_adjacency *graph, const int32_t *piece, int32_t removed, int32_t start, bool *seen,
+                     int32_t *queue)
+{
+    int32_t head = 0, tail = 0;
+    queue[tail++] = start;
+    seen[start] = true;
+    while (head < tail) {
+        const int32_t v = queue[head++];
+        for (int64_t p = graph->first[v]; p < graph->first[v + 1]; p++) {
+            const int32_t w = graph->adj[p];
+            if (!seen[w] && piece[w] != removed) {
+                seen[w] = true;
+                queue[tail++] = w;
+            }
+        }
+    }
+    return tail;
+}
+
+/* The last piece is the first separator: small, and without it no part is much more than half. */
+static void check_top_separator(const grid *g, const double *xyz, double widest)
+{
+    int32_t *piece = sl_alloc(g->n, sizeof *piece), *queue = sl_alloc(g->n, sizeof *queue);
+    bool *seen = sl_calloc(g->n, sizeof *seen);
+    assert_true(piece && queue && seen);
+    assert_int_equal(sl_dissect(&g->graph, xyz, piece), SL_OK);
+    int32_t last = 0, size = 0;
+    for (int32_t i = 0; i < g->n; i++) {
+        last = piece[i] > last ? piece[i] : last;
+    }
+    for (int32_t i = 0; i < g->n; i++) {
+        size += piece[i] == last;
+    }
+    assert_true(last >= 2);
+    assert_true(size <= widest * g->side * g->twins);
+    for (int32_t i = 0; i < g->n; i++) {
+        if (!seen[i] && piece[i] != last) {
+            assert_true(flood(&g->graph, piece, last, i, seen, queue) <= g->n / 2 + g->side * g->twins);
+        }
+    }
+    for (int32_t i = 0; i < g->side * g->side && xyz != NULL; i++) {
+        for (int32_t k = 1; k < g->twins; k++) {
+            assert_int_equal(piece[g->number[i * g->twins + k]], piece[g->number[i * g->twins]]);
+        }
+    }
+    sl_free(piece);
+    sl_free(queue);
+    sl_free(seen);
+}
+
+static void dissection_halves_a_grid_by_a_small_separator(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xd155);
+    for (int32_t twins = 1; twins <= 3; twins++) {
+        grid g = grid_create(24, twins, &rng);
+        check_top_separator(&g, g.xyz, 1.6);
+        check_top_separator(&g, NULL, 2.0);
+        grid_clear(&g);
+    }
+}
+
+static void dissection_fills_a_grid_little_more_than_minimum_degree(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xf111);
+    sl_csc *A = random_spd(MATRIX_GRID, 60 * 60, 0.3, &rng);
+    int64_t nnz[SL_COUNTOF(orderings)];
+    for (size_t o = 0; o < SL_COUNTOF(orderings); o++) {
+        sl_cholesky_def def = sl_cholesky_default();
+        sl_cholesky *F = NULL;
+        def.ordering = orderings[o];
+        assert_int_equal(sl_cholesky_analyze(A, &def, &F), SL_OK);
+        nnz[o] = sl_cholesky_nnz(F);
+        sl_cholesky_free(F);
+    }
+    assert_int_equal(nnz[0], nnz[2]);             /* no points: AUTO is CAMD */
+    assert_true(2 * nnz[3] < 3 * nnz[2]);         /* dissection by breadth-first search */
+    assert_true(8 * nnz[3] < nnz[1]);             /* the shuffled order is hopeless */
+    assert_true(nnz[2] < 40 * (int64_t)A->ncols); /* about 31 log2(n) n / 12 for the 5-point grid */
+    sl_csc_free(A);
+}
+
+static void bad_patterns_and_points_are_bad_input(void **state)
+{
+    (void)state;
+    int64_t colptr[] = {0, 2, 3, 4};
+    int32_t row[] = {0, 2, 1, 2}, perm[3];
+    sl_csc A = {3, 3, colptr, row, NULL};
+    double xyz[9] = {0.3, 0.1, 0.7, 0.9, 0.2, 0.8, 0.5, 0.6, 0.4};
+    assert_int_equal(sl_order(&A, SL_ORDER_CAMD, NULL, perm), SL_OK);
+    xyz[4] = NAN;
+    assert_int_equal(sl_order(&A, SL_ORDER_NESTED_DISSECTION, xyz, perm), SL_BAD_INPUT);
+    row[2] = 2; /* no diagonal */
+    assert_int_equal(sl_order(&A, SL_ORDER_CAMD, NULL, perm), SL_BAD_INPUT);
+    row[2] = 1;
+    A.nrows = 4;
+    assert_int_equal(sl_order(&A, SL_ORDER_NATURAL, NULL, perm), SL_BAD_INPUT);
+}
+
+static bool is_cover(bool joined[6][6], int32_t left, int32_t right, const bool *left_in, const bool *right_in)
+{
+    for (int32_t l = 0; l < left; l++) {
+        for (int32_t r = 0; r < right; r++) {
+            if (joined[l][r] && !left_in[l] && !right_in[r]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+static int32_t smallest_cover(bool joined[6][6], int32_t left, int32_t right)
+{
+    int32_t best = left + right;
+    for (int32_t set = 0; set < 1 << (left + right); set++) {
+        bool left_in[6], right_in[6];
+        int32_t size = 0;
+        for (int32_t k = 0; k < left + right; k++) {
+            const bool in = (set >> k & 1) != 0;
+            size += in;
+            if (k < left) {
+                left_in[k] = in;
+            } else {
+                right_in[k - left] = in;
+            }
+        }
+        if (size < best && is_cover(joined, left, right, left_in, right_in)) {
+            best = size;
+        }
+    }
+    return best;
+}
+
+static void vertex_covers_are_minimum(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xc0ef);
+    for (int trial = 0; trial < 300 * test_multiplier(); trial++) {
+        const int32_t left = 1 + test_index(&rng, 6), right = 1 + test_index(&rng, 6),
+                      density = 1 + test_index(&rng, 5);
+        bool joined[6][6] = {{false}}, left_in[6], right_in[6];
+        int64_t first[7] = {0}, next[6];
+        int32_t adj[36], left_mate[6], right_mate[6], level[6], stack[6];
+        int64_t edges = 0;
+        for (int32_t l = 0; l < left; l++) {
+            for (int32_t r = 0; r < right; r++) {
+                joined[l][r] = test_index(&rng, 6) < density;
+                if (joined[l][r]) {
+                    adj[edges++] = r;
+                }
+            }
+            first[l + 1] = edges;
+        }
+        sl_bipartite g = {left, right, first, adj, left_mate, right_mate, level, stack, next, left_in, right_in};
+        sl_minimum_vertex_cover(&g);
+        int32_t size = 0;
+        for (int32_t k = 0; k < left; k++) {
+            size += left_in[k];
+        }
+        for (int32_t k = 0; k < right; k++) {
+            size += right_in[k];
+        }
+        assert_true(is_cover(joined, left, right, left_in, right_in));
+        assert_int_equal(size, smallest_cover(joined, left, right));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_ordering_is_a_permutation),
+        cmocka_unit_test(dissection_halves_a_grid_by_a_small_separator),
+        cmocka_unit_test(dissection_fills_a_grid_little_more_than_minimum_degree),
+        cmocka_unit_test(bad_patterns_and_points_are_bad_input),
+        cmocka_unit_test(vertex_covers_are_minimum),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
