@@ -17,6 +17,8 @@ typedef struct flow_network {
     int32_t *level;    /* arcs to the nearest negative seed, -1 = none can be reached */
     int32_t *next;     /* first arc of each row not yet found useless in this phase */
     int32_t *queue;    /* nodes, of a search; arcs, of a path */
+    int32_t *active;   /* free nodes, and seeds with an arc to a node that is no seed of the same sign */
+    int32_t active_count;
 } flow_network;
 
 static bool open_arc(const flow_network *net, int32_t p)
@@ -95,13 +97,38 @@ static void fill_residuals(flow_network *net)
     }
 }
 
-/* Levels by a search from the negative seeds against the arcs. True if a positive seed was reached. */
+/* Whether flow can enter or leave node i other than among seeds of one sign. */
+static bool is_active(const flow_network *net, int32_t i)
+{
+    bool active = net->seed[i] == 0;
+    for (int32_t p = net->graph->first[i]; p < net->graph->first[i + 1] && !active; p++) {
+        const int8_t other = net->seed[net->graph->adj[p]];
+        active = other == 0 || (other > 0) != (net->seed[i] > 0);
+    }
+    return active;
+}
+
+/* Lists the active nodes: phases then cost what the band between the seeds costs, not the whole graph. */
+static void find_active(flow_network *net)
+{
+    net->active_count = 0;
+    for (int32_t i = 0; i < net->graph->n; i++) {
+        net->level[i] = net->seed[i] < 0 ? 0 : -1;
+        if (is_active(net, i)) {
+            net->active[net->active_count++] = i;
+        }
+    }
+}
+
+/* Levels of the active nodes by a search from the negative seeds against the arcs, not through positive seeds: what
+ * comes to one starts there as well. True if a positive seed was reached. */
 static bool find_levels(flow_network *net)
 {
     const sl_graph *graph = net->graph;
     int32_t tail = 0;
     bool reached = false;
-    for (int32_t i = 0; i < graph->n; i++) {
+    for (int32_t k = 0; k < net->active_count; k++) {
+        const int32_t i = net->active[k];
         net->next[i] = graph->first[i];
         net->level[i] = net->seed[i] < 0 ? 0 : -1;
         if (net->seed[i] < 0) {
@@ -110,12 +137,15 @@ static bool find_levels(flow_network *net)
     }
     for (int32_t head = 0; head < tail; head++) {
         const int32_t i = net->queue[head];
-        reached = reached || net->seed[i] > 0;
         for (int32_t p = graph->first[i]; p < graph->first[i + 1]; p++) {
             const int32_t j = graph->adj[p];
             if (net->level[j] < 0 && open_arc(net, net->reverse[p])) {
                 net->level[j] = net->level[i] + 1;
-                net->queue[tail++] = j;
+                if (net->seed[j] > 0) {
+                    reached = true;
+                } else {
+                    net->queue[tail++] = j;
+                }
             }
         }
     }
@@ -220,12 +250,14 @@ static sl_status network_create(const sl_graph *graph, const int8_t *seed, flow_
                           .threshold = sl_alloc(entries, sizeof *net->threshold),
                           .level = sl_alloc(n, sizeof *net->level),
                           .next = sl_alloc(n, sizeof *net->next),
-                          .queue = sl_alloc(n, sizeof *net->queue)};
+                          .queue = sl_alloc(n, sizeof *net->queue),
+                          .active = sl_alloc(n, sizeof *net->active)};
     if (net->reverse == NULL || net->tail == NULL || net->residual == NULL || net->threshold == NULL ||
-        net->level == NULL || net->next == NULL || net->queue == NULL) {
+        net->level == NULL || net->next == NULL || net->queue == NULL || net->active == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     fill_residuals(net);
+    find_active(net);
     return pair_arcs(net);
 }
 
@@ -238,6 +270,7 @@ static void network_clear(flow_network *net)
     sl_free(net->level);
     sl_free(net->next);
     sl_free(net->queue);
+    sl_free(net->active);
 }
 
 sl_status sl_graph_min_cut(const sl_graph *graph, const int8_t *seed, uint8_t *side, double *value)
@@ -247,9 +280,9 @@ sl_status sl_graph_min_cut(const sl_graph *graph, const int8_t *seed, uint8_t *s
     SL_TRY(network_create(graph, seed, &net));
     /* Each phase raises the lowest level of a positive seed: at most n phases. */
     for (int32_t phase = 0; phase < graph->n && find_levels(&net); phase++) {
-        for (int32_t i = 0; i < graph->n; i++) {
-            if (seed[i] > 0 && net.level[i] > 0) {
-                block_from(&net, i);
+        for (int32_t k = 0; k < net.active_count; k++) {
+            if (seed[net.active[k]] > 0 && net.level[net.active[k]] > 0) {
+                block_from(&net, net.active[k]);
             }
         }
     }
