@@ -33,7 +33,7 @@ SL_NODISCARD sl_status sl_graph_shortest_paths(const sl_graph *graph, const int3
 /* Minimum cut between the nodes with seed[i] > 0 and those with seed[i] < 0 (0 = free); capacities are the weights,
  * equal in both directions, >= 0, HUGE_VAL = never cut if that can be helped. side[i] = 1 (positive side) or 0; *value
  * = capacity cut. Among minimum cuts the one with the smallest positive side; an arc counts as full once 2^-40 of its
- * capacity or less is left. SL_OUT_OF_MEMORY. Dinic's algorithm, O(n^2 edges) at worst, near linear on bands; ends
+ * capacity or less is left. SL_OUT_OF_MEMORY. Dinic's algorithm, O(n^2 edges) at worst; ends
  * after at most n phases whatever the rounding. Source: Dinic 1970, "Algorithm for solution of a problem of maximum
  * flow in networks with power estimation". */
 SL_NODISCARD sl_status sl_graph_min_cut(const sl_graph *graph, const int8_t *seed, uint8_t *side, double *value);
