@@ -7,6 +7,9 @@
  * is rounding. It is far below any tolerance asked for. */
 static const double dependent_share = 1e-11;
 
+/* A vector that keeps less than this share of its length within its block is projected again. */
+static const double kept_share = 0.5;
+
 static const int32_t rotation_rows = 256;
 
 double *sl_lanczos_column(const sl_lanczos *s, int32_t k)
@@ -47,27 +50,37 @@ void sl_lanczos_random_block(sl_lanczos *s)
     }
 }
 
+/* w, column c of the block at `at`, made orthogonal to the columns of the block before it; their shares go to r. */
+static void orthogonalise_within(sl_lanczos *s, int32_t at, int32_t c, double *w, double *r)
+{
+    const double *W = sl_lanczos_column(s, at);
+    for (int pass = 0; pass < 2 && c > 0; pass++) {
+        cblas_dgemv(CblasColMajor, CblasTrans, s->n, c, 1.0, W, s->n, w, 1, 0.0, s->H, 1);
+        cblas_dgemv(CblasColMajor, CblasNoTrans, s->n, c, -1.0, W, s->n, s->H, 1, 1.0, w, 1);
+        cblas_daxpy(c, 1.0, s->H, 1, r, 1);
+    }
+}
+
 /* Makes the block at column `at` (orthogonal to all before it) orthonormal: W = W_new R. length: the columns' norms
  * before they were projected. Columns that depend on the others are replaced by random ones, with zeros in R. */
 static void orthonormalise_block(sl_lanczos *s, int32_t at, const double *length)
 {
     const int32_t b = s->block;
-    double *W = sl_lanczos_column(s, at);
     memset(s->R, 0, (size_t)b * (size_t)b * sizeof *s->R);
     for (int32_t c = 0; c < b; c++) {
-        double *w = W + (int64_t)c * s->n;
-        for (int pass = 0; pass < 2 && c > 0; pass++) {
-            double *h = s->H;
-            cblas_dgemv(CblasColMajor, CblasTrans, s->n, c, 1.0, W, s->n, w, 1, 0.0, h, 1);
-            cblas_dgemv(CblasColMajor, CblasNoTrans, s->n, c, -1.0, W, s->n, h, 1, 1.0, w, 1);
-            cblas_daxpy(c, 1.0, h, 1, s->R + (int64_t)c * b, 1);
-        }
+        double *w = sl_lanczos_column(s, at + c), *r = s->R + (int64_t)c * b;
+        const double before = cblas_dnrm2(s->n, w, 1);
+        orthogonalise_within(s, at, c, w, r);
         const double left = cblas_dnrm2(s->n, w, 1);
-        if (left > dependent_share * length[c]) {
-            s->R[(int64_t)c * b + c] = left;
-            cblas_dscal(s->n, 1.0 / left, w, 1);
-        } else {
+        if (!(left > dependent_share * length[c])) {
             random_unit(s, s->null_count + at + c, w);
+            continue;
+        }
+        r[c] = left;
+        cblas_dscal(s->n, 1.0 / left, w, 1);
+        if (left < kept_share * before) { /* what shrank has lost its right angle to the basis */
+            project_out(s, s->null_count + at + c, w, 1, s->H);
+            cblas_dscal(s->n, 1.0 / cblas_dnrm2(s->n, w, 1), w, 1);
         }
     }
 }

@@ -219,9 +219,9 @@ static bool found_missed_pair(const sl_lanczos *s)
 static sl_status fill_basis(sl_lanczos *s)
 {
     sl_status status = SL_OK;
-    bool missed = false;
+    bool more = false;
     int32_t converged = 0;
-    while (!s->finished && !missed && s->size + s->block <= s->max_basis) {
+    while (!s->finished && !more && s->size + s->block <= s->max_basis) {
         SL_TRY(sl_report_progress(s->context, "eigenvectors", (double)converged / s->wanted));
         sl_lanczos_expand(s);
         if (s->verifying && --s->verify_left > 0) {
@@ -231,14 +231,13 @@ static sl_status fill_basis(sl_lanczos *s)
             continue;
         }
         SL_TRY(sl_lanczos_ritz(s));
-        if (s->verifying) {
-            s->verifying = false;
-            missed = found_missed_pair(s);
-            s->finished = !missed;
-            continue;
-        }
         converged = sl_lanczos_count_converged(s);
-        if (converged == s->wanted) {
+        if (s->verifying) {
+            /* A copy of the last value may have mixed in before it converged: that takes another filling, too. */
+            s->verifying = false;
+            s->finished = converged == s->wanted && !found_missed_pair(s);
+            more = !s->finished;
+        } else if (converged == s->wanted) {
             begin_verification(s);
         }
     }

@@ -89,6 +89,9 @@ void sl_lanczos_restart(sl_lanczos *s, int32_t kept)
 static sl_status rayleigh_ritz(sl_lanczos *s)
 {
     const int32_t w = s->wanted, n = s->n;
+    if (w == 0) {
+        return SL_OK;
+    }
     double *X = s->X + (int64_t)n * s->null_count, *lambda = s->lambda + s->null_count;
     for (int32_t c = 0; c < w; c += s->block) {
         const int32_t b = w - c < s->block ? w - c : s->block;
