@@ -44,6 +44,9 @@ static bool next_line(off_reader *r)
         if (r->line > 0) { /* step over the line end: LF, CR LF or CR */
             start += *start == '\r' && start + 1 < r->end && start[1] == '\n' ? 2 : 1;
         }
+        if (start == r->end && r->line > 0) {
+            break; /* the last line end starts no line */
+        }
         r->line++;
         const char *stop = start;
         while (stop < r->end && *stop != '\n' && *stop != '\r') {
