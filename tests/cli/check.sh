@@ -1,0 +1,205 @@
+#!/usr/bin/env bash
+# The program as a user meets it: verbs, exit codes, files whole or not there, the same bytes.
+#   tests/cli/check.sh PATH/TO/seamlab
+set -u
+seamlab=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+bad=0
+
+complain() {
+    printf '%s\n' "$*"
+    bad=1
+}
+
+# expect CODE COMMAND...: runs it, its output in out.txt and err.txt.
+expect() {
+    local code=$1 got
+    shift
+    "$@" >out.txt 2>err.txt </dev/null
+    got=$?
+    [ $got = "$code" ] || {
+        complain "exit $got, not $code: $*"
+        cat err.txt
+    }
+}
+
+contains() {
+    grep -q -- "$2" "$1" || complain "$1 does not say '$2': $(head -c 300 "$1")"
+}
+
+no_file() {
+    for f in "$@"; do [ ! -e "$f" ] || complain "$f should not be there"; done
+}
+
+no_temporaries() {
+    local left
+    left=$(find . -name '*.tmp*' -o -name '.*.part*' | head -n 3)
+    [ -z "$left" ] || complain "left behind: $left"
+}
+
+# --- help and usage
+expect 0 "$seamlab" --help
+contains out.txt unwrap
+expect 0 "$seamlab" --version
+expect 2 "$seamlab"
+expect 2 "$seamlab" sing
+for verb in unwrap check measure segment spectrum demo; do
+    expect 0 "$seamlab" $verb --help
+    contains out.txt 'Examples:'
+    expect 2 "$seamlab" $verb --no-such-option
+    contains err.txt 'unknown option'
+done
+expect 2 "$seamlab" unwrap
+expect 2 "$seamlab" unwrap a.obj -o b.off
+contains err.txt 'cannot hold UVs'
+expect 2 "$seamlab" unwrap a.obj -o b.obj --rule sideways
+contains err.txt 'longest|length-lambda|lookahead'
+expect 2 "$seamlab" unwrap a.obj -o b.obj --max-stretch 0.5
+expect 2 "$seamlab" unwrap a.obj -o b.obj --seams x --labels y
+expect 2 "$seamlab" demo --model elephant-and-castle
+
+# --- the demo makes a mesh to go on with
+expect 0 "$seamlab" demo -o demo --quiet
+for f in hand.obj hand.atlas.json both.png model.png atlas.png; do [ -s demo/$f ] || complain "demo/$f is missing"; done
+[ ! -s out.txt ] && [ ! -s err.txt ] || complain "--quiet was not"
+head -c 8 demo/both.png | od -An -tx1 | grep -q '89 50 4e 47 0d 0a 1a 0a' || complain "both.png is no PNG"
+mesh=demo/hand.obj
+
+# --- unwrap: same bytes for any number of threads and over runs; sidecar beside it
+for n in 1 2 5; do
+    expect 0 "$seamlab" unwrap $mesh -o uv$n.obj --threads $n
+done
+expect 0 "$seamlab" unwrap $mesh -o again.obj --threads 2
+for n in 2 5; do
+    cmp -s uv1.obj uv$n.obj && cmp -s uv1.atlas.json uv$n.atlas.json || complain "other bytes with $n threads"
+done
+cmp -s uv2.obj again.obj && cmp -s uv2.atlas.json again.atlas.json || complain "other bytes on a second run"
+contains uv1.atlas.json '"passed":true'
+expect 0 "$seamlab" unwrap $mesh -o uv.ply --json
+contains out.txt '"certified":true'
+expect 0 "$seamlab" unwrap uv.ply -o back.ply --quiet
+expect 0 "$seamlab" unwrap $mesh -o paper.obj --preset paper
+contains paper.atlas.json '"rule":"longest"'
+contains paper.atlas.json '"energy":"unweighted"'
+expect 0 "$seamlab" unwrap $mesh -o override.obj --sew on --preset paper
+contains override.atlas.json '"sew":true'
+for rule in longest length-lambda lookahead; do
+    expect 0 "$seamlab" unwrap $mesh -o rule.obj --rule $rule --sew off
+done
+expect 0 "$seamlab" unwrap $mesh -o preview.obj --preview pictures/
+[ -s pictures/both.png ] || complain "no preview"
+expect 0 "$seamlab" unwrap $mesh -o - --quiet
+contains out.txt '^vt '
+
+# --- warnings, and --strict
+expect 0 "$seamlab" unwrap $mesh -o capped.obj --max-charts 1 --max-stretch 1.01 --sew off --minimise off
+contains err.txt 'warning: chart'
+expect 4 "$seamlab" unwrap $mesh -o capped.obj --max-charts 1 --max-stretch 1.01 --sew off --minimise off --strict
+
+# --- measure
+expect 0 "$seamlab" measure uv1.obj
+contains out.txt 'flipped 0'
+expect 0 "$seamlab" measure uv1.obj uv.ply --json
+[ "$(wc -l <out.txt)" = 2 ] || complain "measure --json: not a line a file"
+sed -n 1p out.txt | sed 's/uv1.obj//' >one.txt
+sed -n 2p out.txt | sed 's/uv.ply//' >two.txt
+cmp -s one.txt two.txt || complain "OBJ and PLY of one atlas measure differently"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
+expect 3 "$seamlab" measure bare.obj
+contains err.txt 'no UVs'
+
+# --- seams of one's own: segment writes what unwrap reads
+expect 0 "$seamlab" segment $mesh --labels labels.csv --seams seams.csv -o charts.ply
+contains labels.csv '^facet,chart$'
+expect 0 "$seamlab" unwrap $mesh -o l.obj --labels labels.csv
+expect 0 "$seamlab" unwrap $mesh -o s.obj --seams seams.csv
+expect 0 "$seamlab" unwrap uv1.obj -o k.obj --keep-seams
+for f in l.obj s.obj k.obj; do
+    "$seamlab" measure $f --json | grep -o '"charts":[0-9]*' >charts.txt
+    "$seamlab" measure uv1.obj --json | grep -o '"charts":[0-9]*' | cmp -s - charts.txt || complain "$f has other charts"
+done
+expect 3 "$seamlab" unwrap $mesh -o x.obj --keep-seams --labels /dev/null
+expect 3 "$seamlab" unwrap $mesh -o x.obj --labels bare.obj
+contains err.txt 'bare.obj:1'
+expect 3 "$seamlab" unwrap $mesh -o x.obj --seams missing.csv
+expect 3 "$seamlab" unwrap bare.obj -o x.obj --keep-seams
+printf '0 1\n' >one-edge.csv
+expect 4 "$seamlab" unwrap $mesh -o x.obj --seams one-edge.csv
+contains err.txt 'borders'
+no_file x.obj x.atlas.json
+
+# --- segment and spectrum
+expect 0 "$seamlab" segment $mesh
+contains out.txt '^0,'
+expect 0 "$seamlab" segment $mesh --json --preset paper
+contains out.txt '"invalid":0'
+expect 0 "$seamlab" spectrum $mesh --vectors 8 -o v.csv
+contains out.txt passes
+contains v.csv '^facet,v0,v1'
+expect 0 "$seamlab" spectrum $mesh --vectors 8 -o v.ply --json
+contains out.txt '"converged":true'
+
+# --- check
+expect 0 "$seamlab" check $mesh --strict
+contains out.txt 'nothing to repair'
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 2 1 5\nf 3 3 1\nf 2 3 1\n' >dirty.obj
+expect 0 "$seamlab" check dirty.obj
+contains out.txt 'non-manifold edges'
+expect 4 "$seamlab" check dirty.obj --strict
+expect 0 "$seamlab" check dirty.obj --json
+contains out.txt '"duplicate_facets":\[4\]'
+expect 0 "$seamlab" unwrap dirty.obj -o dirty-uv.obj
+
+# --- hostile input: exit 3, a line that names the place, no output
+hostile() {
+    printf "$2" >"$1"
+    expect 3 "$seamlab" unwrap "$1" -o hostile-out.obj
+    contains err.txt "$3"
+    no_file hostile-out.obj hostile-out.atlas.json
+}
+hostile empty.obj '' 'empty.obj'
+hostile range.obj 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n' 'range.obj:4'
+hostile nan.obj 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' 'nan.obj:1'
+hostile short.obj 'v 0 0 0\nv 1 0 0\nf 1 2\n' 'short.obj:3'
+hostile lies.ply 'ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n' 'lies.ply'
+hostile lies.off 'OFF\n2000000000 2000000000 0\n0 0 0\n' 'lies.off'
+head -c 4096 /dev/urandom >noise.ply
+expect 3 "$seamlab" check noise.ply
+expect 3 "$seamlab" check no-such-file.obj
+expect 3 "$seamlab" check .
+contains err.txt '.'
+
+# --- magnitudes: 1e-30 to 1e30
+for scale in 1e-30 1e30; do
+    awk -v s=$scale '$1 == "v" { printf "v %.17g %.17g %.17g\n", $2 * s, $3 * s, $4 * s; next } { print }' $mesh >scaled.obj
+    expect 0 "$seamlab" unwrap scaled.obj -o scaled-uv.obj
+done
+
+# --- a full disk and an unwritable folder leave nothing behind
+if [ -w /dev/full ]; then
+    "$seamlab" segment $mesh >/dev/full 2>err.txt
+    [ $? = 1 ] || complain "a full disk is not exit 1"
+fi
+expect 1 "$seamlab" unwrap $mesh -o no-such-folder/x.obj
+no_file no-such-folder
+
+# --- Ctrl-C: exit 130, the old output stands, nothing half written
+cp uv1.obj kept.obj
+cp kept.obj before.obj
+if [ "$(id -u)" -ge 0 ]; then
+    "$seamlab" unwrap $mesh -o kept.obj --max-stretch 1.0001 --sew off >/dev/null 2>&1 &
+    pid=$!
+    sleep 0.05
+    kill -INT $pid 2>/dev/null
+    wait $pid
+    code=$?
+    case $code in
+    130) cmp -s kept.obj before.obj || complain "an interrupted run changed its output" ;;
+    0) ;; # it was done before the signal came
+    *) complain "exit $code after Ctrl-C" ;;
+    esac
+fi
+no_temporaries
+exit $bad
