@@ -74,6 +74,7 @@ sl_status sl_part_jobs(const sl_chart_job *job, sl_job_list *list)
 
 typedef struct job_range {
     const sl_recursion *recursion;
+    sl_job_fn *fn;
     sl_chart_job *job;
 } job_range;
 
@@ -82,17 +83,17 @@ static void run_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     (void)chunk;
     const job_range *range = user;
     for (int64_t k = begin; k < end; k++) {
-        sl_chart_job_run(range->recursion, &range->job[k]);
+        range->fn(range->recursion, &range->job[k]);
     }
 }
 
-sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_list *list)
+sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_fn *fn, sl_job_list *list)
 {
     const sl_context quiet = {.executor =
                                   context != NULL ? context->executor : NULL}; /* progress: calling thread only */
     sl_recursion r = *recursion;
     r.context = list->count == 1 ? context : &quiet;
-    job_range range = {&r, list->job};
+    job_range range = {&r, fn, list->job};
     sl_parallel_for(context, list->count, 1, run_range, &range);
     for (int64_t k = 0; k < list->count; k++) {
         if (list->job[k].status != SL_OK) {

@@ -12,32 +12,11 @@
 #define HANDLE_PENALTY 4.0   /* ... and for each of its handles */
 #define WORST_LOG_L2 20.0    /* a collapsed map counts as this */
 
-typedef struct border_edges {
-    int32_t *vertex; /* 2 an edge */
-    int32_t count;
-} border_edges;
-
-static sl_status border_create(const sl_patch *patch, border_edges *border)
-{
-    border->vertex = sl_alloc(6 * (int64_t)patch->nt, sizeof *border->vertex);
-    if (border->vertex == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    for (int32_t c = 0; c < 3 * patch->nt; c++) {
-        if (patch->twin[c] < 0) {
-            border->vertex[2 * border->count] = patch->tri[c];
-            border->vertex[2 * border->count + 1] = patch->tri[sl_corner_next(c)];
-            border->count++;
-        }
-    }
-    return SL_OK;
-}
-
 /* log L2 of the conformal map of a disk, with the penalties. */
 static sl_status disk_cost(const sl_patch *patch, const sl_context *context, double *cost)
 {
     sl_status status = SL_OK;
-    border_edges border = {0};
+    int32_t *border = NULL, nb = 0;
     sl_distortion d;
     sl_certificate certificate;
     *cost = WORST_LOG_L2;
@@ -57,14 +36,14 @@ static sl_status disk_cost(const sl_patch *patch, const sl_context *context, dou
         }
     }
     SL_TRY(sl_distortion_measure_indexed(patch->nt, patch->tri, patch->xyz, uv, &d));
-    SL_TRY(border_create(patch, &border));
-    SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, border.count, border.vertex, &certificate));
+    SL_TRY(sl_patch_border_pairs(patch, &border, &nb));
+    SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, nb, border, &certificate));
     const double log_l2 = d.l2 > 0.0 ? log(d.l2) : 0.0;
     *cost = fmin(isfinite(log_l2) ? log_l2 : WORST_LOG_L2, WORST_LOG_L2);
     *cost += FLIP_PENALTY * (certificate.flipped + certificate.degenerate) / (double)patch->nt;
     *cost += certificate.border_crossings > 0 ? OVERLAP_PENALTY : 0.0;
 cleanup:
-    sl_free(border.vertex);
+    sl_free(border);
     sl_free(uv);
     return status;
 }
@@ -81,11 +60,7 @@ static sl_status side_cost(sl_piece *half, const sl_context *context, double *co
         SL_TRY(sl_join_loops(half->mesh, &joined));
     }
     if (topology.genus == 0 && topology.loops >= 1) {
-        int32_t *all = half->face; /* the numbers 0 .. nf - 1 are all that is needed from here on */
-        for (int32_t f = 0; f < half->mesh->nf; f++) {
-            all[f] = f;
-        }
-        SL_TRY(sl_patch_extract(half->mesh, half->triangulation, all, half->mesh->nf, &patch));
+        SL_TRY(sl_piece_patch(half, &patch));
         if (sl_patch_is_disk(patch)) {
             SL_TRY(disk_cost(patch, context, cost));
         }

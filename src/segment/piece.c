@@ -214,21 +214,46 @@ sl_status sl_piece_topology(const sl_piece *piece, sl_topology *out)
     return status;
 }
 
-sl_status sl_flatten_piece(const sl_piece *piece, const sl_flatten_def *def, const sl_context *context,
-                           double *corner_uv, sl_flatten_result *flat)
+sl_status sl_piece_patch(const sl_piece *piece, sl_patch **out)
 {
-    sl_status status = SL_OK;
-    sl_patch *patch = NULL;
-    double *uv = NULL;
     const int32_t n = piece->mesh->nf;
     int32_t *all = sl_alloc(n, sizeof *all);
+    *out = NULL;
     if (all == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     for (int32_t f = 0; f < n; f++) {
         all[f] = f;
     }
-    SL_TRY(sl_patch_extract(piece->mesh, piece->triangulation, all, n, &patch));
+    const sl_status status = sl_patch_extract(piece->mesh, piece->triangulation, all, n, out);
+    sl_free(all);
+    return status;
+}
+
+sl_status sl_patch_border_pairs(const sl_patch *patch, int32_t **vertex, int32_t *count)
+{
+    *count = 0;
+    *vertex = sl_alloc(6 * (int64_t)patch->nt, sizeof **vertex);
+    if (*vertex == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        if (patch->twin[c] < 0) {
+            (*vertex)[2 * *count] = patch->tri[c];
+            (*vertex)[2 * *count + 1] = patch->tri[sl_corner_next(c)];
+            (*count)++;
+        }
+    }
+    return SL_OK;
+}
+
+sl_status sl_flatten_piece(const sl_piece *piece, const sl_flatten_def *def, const sl_context *context,
+                           double *corner_uv, sl_flatten_result *flat)
+{
+    sl_status status = SL_OK;
+    sl_patch *patch = NULL;
+    double *uv = NULL;
+    SL_TRY(sl_piece_patch(piece, &patch));
     uv = sl_alloc(2 * (int64_t)patch->nv, sizeof *uv);
     if (uv == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
@@ -240,6 +265,5 @@ sl_status sl_flatten_piece(const sl_piece *piece, const sl_flatten_def *def, con
 cleanup:
     sl_free(uv);
     sl_patch_free(patch);
-    sl_free(all);
     return status;
 }

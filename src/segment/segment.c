@@ -118,11 +118,18 @@ static sl_status recurse(run *r)
                                         .partner = r->partner,
                                         .may_split = r->done.count + r->pending.count < r->def->max_charts};
         SL_TRY(sl_report_progress(r->context, "segment", (double)r->facets_done / r->mesh->nf));
-        SL_TRY(sl_run_jobs(&recursion, r->context, &r->pending));
+        SL_TRY(sl_run_jobs(&recursion, r->context, sl_chart_job_run, &r->pending));
         SL_TRY(harvest(r));
     }
 cleanup:
     return status;
+}
+
+static sl_status polish(run *r)
+{
+    const sl_recursion recursion = {.mesh = r->work, .triangulation = r->triangulation, .def = r->def};
+    sl_status status = sl_report_progress(r->context, "relax", 0.0);
+    return status != SL_OK ? status : sl_run_jobs(&recursion, r->context, sl_chart_job_polish, &r->done);
 }
 
 static sl_status run_create(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
@@ -179,6 +186,7 @@ sl_status sl_segment(sl_mesh *mesh, const sl_triangulation *triangulation, const
     if (def->sew) {
         SL_TRY(sl_sew_charts(r.work, mesh, triangulation, r.first_cut, def, context, &r.done, &r.merges));
     }
+    SL_TRY(polish(&r));
     SL_TRY(deliver(&r, mesh, out));
 cleanup:
     run_clear(&r);
@@ -207,11 +215,12 @@ sl_status sl_flatten_charts(sl_mesh *mesh, const sl_triangulation *triangulation
     SL_TRY(sl_component_jobs(mesh, &r.pending));
     const sl_recursion recursion = {.mesh = mesh, .triangulation = triangulation, .def = def, .may_split = false};
     SL_TRY(sl_report_progress(context, "flatten", 0.0));
-    SL_TRY(sl_run_jobs(&recursion, context, &r.pending));
+    SL_TRY(sl_run_jobs(&recursion, context, sl_chart_job_run, &r.pending));
     for (int64_t k = 0; k < r.pending.count; k++) {
         r.pending.job[k].capped = false;
         SL_TRY(finish(&r, &r.pending.job[k]));
     }
+    SL_TRY(polish(&r));
     SL_TRY(deliver(&r, mesh, out));
 cleanup:
     run_clear(&r);

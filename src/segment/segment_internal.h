@@ -56,6 +56,12 @@ SL_NODISCARD sl_status sl_join_loops(sl_mesh *mesh, sl_cut_list *list);
 /* Sews the edges of a list again. */
 void sl_sew_list(sl_mesh *mesh, const sl_cut_list *list);
 
+/* The whole piece as a patch. */
+SL_NODISCARD sl_status sl_piece_patch(const sl_piece *piece, sl_patch **out);
+
+/* Border edges of a patch as *count pairs of vertices, in the order of the corners; owned by the caller. */
+SL_NODISCARD sl_status sl_patch_border_pairs(const sl_patch *patch, int32_t **vertex, int32_t *count);
+
 /* Flattens the piece as it is. corner_uv: mesh->nh x 2. */
 SL_NODISCARD sl_status sl_flatten_piece(const sl_piece *piece, const sl_flatten_def *def, const sl_context *context,
                                         double *corner_uv, sl_flatten_result *flat);
@@ -114,6 +120,10 @@ typedef struct sl_recursion {
 /* Flattens a chart and, where that is not valid, splits it. The outcome, its status included, is in the job. */
 void sl_chart_job_run(const sl_recursion *recursion, sl_chart_job *job);
 
+/* Relaxes a valid chart whose stretch had to be minimised beyond the bound, as far as the minimisation goes;
+ * recursion->mesh must have the chart's seams cut. Its status is in the job. */
+void sl_chart_job_polish(const sl_recursion *recursion, sl_chart_job *job);
+
 /* Charts that are done. */
 typedef struct sl_job_list {
     sl_chart_job *job;
@@ -130,8 +140,13 @@ SL_NODISCARD sl_status sl_component_jobs(const sl_mesh *mesh, sl_job_list *list)
 /* One job for each part of a job that is split. */
 SL_NODISCARD sl_status sl_part_jobs(const sl_chart_job *job, sl_job_list *list);
 
-/* Runs every job; the context's progress is reported when there is one job only. First failure by index. */
-SL_NODISCARD sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_list *list);
+/* What is done to every job of a list. */
+typedef void sl_job_fn(const sl_recursion *recursion, sl_chart_job *job);
+
+/* Runs fn on every job in parallel; the context's progress is reported when there is one job only. First failure by
+ * index. */
+SL_NODISCARD sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_fn *fn,
+                                   sl_job_list *list);
 
 /* Merges neighbouring charts while they stay valid and within def->sew_stretch. work: the mesh with all charts' seams
  * cut; original: as the caller gave it (its own seams are never sewn); first_cut[h] = 1 on edges of the first cuts.
