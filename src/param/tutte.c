@@ -182,10 +182,10 @@ sl_status sl_tutte(const sl_patch *patch, sl_tutte_weights weights, const sl_con
         SL_TRY(solve_interior(patch, weights, n, unknown, map));
     }
     scale_to_area(patch, map);
+    SL_TRY(sl_report_progress(context, "embedding by Tutte", 1.0));
     for (int64_t i = 0; i < 2 * (int64_t)patch->nv; i++) {
         uv[i] = map[i];
     }
-    SL_TRY(sl_report_progress(context, "embedding by Tutte", 1.0));
 cleanup:
     sl_free(first);
     sl_free(halfedge);

@@ -1,0 +1,456 @@
+/* One triangle's energy and the Newton system: finite differences, LAPACKE, brute force. */
+#include "param/stretch_internal.h"
+
+#include <lapacke.h>
+
+#include "param/distortion.h"
+#include "param/stretch_charts.h"
+#include "param/tutte.h"
+
+static const double weights[] = {0.0, 0.3, 1.0};
+
+static double determinant(const double J[4])
+{
+    return J[0] * J[3] - J[1] * J[2];
+}
+
+/* A random matrix of positive determinant, singular values from 0.05 to 20. */
+static void random_jacobian(test_rng *rng, double J[4])
+{
+    const double a = test_uniform(rng, 0.0, 7.0), b = test_uniform(rng, 0.0, 7.0);
+    const double s1 = exp(test_uniform(rng, -3.0, 3.0)), s2 = exp(test_uniform(rng, -3.0, 3.0));
+    const double ca = cos(a), sa = sin(a), cb = cos(b), sb = sin(b);
+    J[0] = ca * s1 * cb - sa * s2 * sb;
+    J[1] = -ca * s1 * sb - sa * s2 * cb;
+    J[2] = sa * s1 * cb + ca * s2 * sb;
+    J[3] = -sa * s1 * sb + ca * s2 * cb;
+}
+
+/* Singular values by LAPACKE, ascending. */
+static void singular_values(const double J[4], double s[2])
+{
+    double copy[4], u[4], vt[4], both[2], super[2];
+    memcpy(copy, J, sizeof copy);
+    assert_int_equal(LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'A', 'A', 2, 2, copy, 2, both, u, 2, vt, 2, super), 0);
+    s[0] = both[1];
+    s[1] = both[0];
+}
+
+static void density_is_the_formula_in_singular_values(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xde51);
+    for (int trial = 0; trial < 300 * test_multiplier(); trial++) {
+        double J[4], s[2];
+        random_jacobian(&rng, J);
+        singular_values(J, s);
+        for (size_t i = 0; i < SL_COUNTOF(weights); i++) {
+            const double w = weights[i], p = s[0] * s[0], q = s[1] * s[1];
+            const double psi = (1.0 - w) * (p + q) + 2.0 * w * s[0] * s[1] + 1.0 / p + 1.0 / q;
+            assert_true(test_near_rel(sl_stretch_density(w, J) / psi, 1.0, 1e-11));
+        }
+    }
+    assert_true(isinf(sl_stretch_density(0.5, (double[]){1.0, 0.3, 0.2, -1.0})));
+    assert_true(isinf(sl_stretch_density(0.5, (double[]){1.0, 2.0, 2.0, 4.0})));
+}
+
+static void density_gradient_matches_central_differences(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x96ad);
+    for (int trial = 0; trial < 300 * test_multiplier(); trial++) {
+        double J[4], P[4], s[2];
+        random_jacobian(&rng, J);
+        singular_values(J, s);
+        const double w = weights[trial % 3], h = 1e-5 * s[0];
+        sl_stretch_density_gradient(w, J, P);
+        const double scale =
+            sqrt(P[0] * P[0] + P[1] * P[1] + P[2] * P[2] + P[3] * P[3]) + sl_stretch_density(w, J) / s[0];
+        for (int k = 0; k < 4; k++) {
+            double up[4], down[4];
+            memcpy(up, J, sizeof up);
+            memcpy(down, J, sizeof down);
+            up[k] += h;
+            down[k] -= h;
+            const double slope = (sl_stretch_density(w, up) - sl_stretch_density(w, down)) / (2.0 * h);
+            assert_true(test_near(slope / scale, P[k] / scale, 1e-8));
+        }
+    }
+}
+
+/* The 4 x 4 Hessian from psi(trace of J'J, det J) by the chain rule: no eigenvalue, no rotation. */
+static void hessian_by_chain_rule(double w, const double J[4], double H[16])
+{
+    const double cof[4] = {J[3], -J[2], -J[1], J[0]};
+    const double d = determinant(J), trace = J[0] * J[0] + J[1] * J[1] + J[2] * J[2] + J[3] * J[3];
+    const double psi_t = 1.0 - w + 1.0 / (d * d), psi_d = 2.0 * w - 2.0 * trace / (d * d * d);
+    const double psi_td = -2.0 / (d * d * d), psi_dd = 6.0 * trace / (d * d * d * d);
+    static const double second[16] = {0, 0, 0, 1, 0, 0, -1, 0, 0, -1, 0, 0, 1, 0, 0, 0}; /* of d */
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            H[4 * i + j] = 2.0 * psi_t * (i == j) + psi_d * second[4 * i + j] + psi_dd * cof[i] * cof[j] +
+                           2.0 * psi_td * (J[i] * cof[j] + cof[i] * J[j]);
+        }
+    }
+}
+
+static void density_modes_are_the_eigenpairs_lapacke_finds(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xe16e);
+    int negative = 0;
+    for (int trial = 0; trial < 500 * test_multiplier(); trial++) {
+        double J[4], lambda[4], Q[16], H[16], values[4], largest = 0.0;
+        random_jacobian(&rng, J);
+        const double w = weights[trial % 3];
+        sl_stretch_density_modes(w, J, lambda, Q);
+        hessian_by_chain_rule(w, J, H);
+        for (int m = 0; m < 4; m++) {
+            largest = fmax(largest, fabs(lambda[m]));
+            negative += lambda[m] < 0.0;
+        }
+        for (int m = 0; m < 4; m++) { /* H q = lambda q, q of unit length and orthogonal to the others */
+            for (int i = 0; i < 4; i++) {
+                double row = 0.0, product = 0.0;
+                for (int k = 0; k < 4; k++) {
+                    row += H[4 * i + k] * Q[4 * m + k];
+                    product += Q[4 * i + k] * Q[4 * m + k];
+                }
+                assert_true(test_near(row / largest, lambda[m] * Q[4 * m + i] / largest, 1e-11));
+                assert_true(test_near(product, i == m ? 1.0 : 0.0, 1e-14));
+            }
+        }
+        assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 4, H, 4, values), 0);
+        for (int i = 0; i < 4; i++) { /* as multisets: sort ours */
+            for (int j = i + 1; j < 4; j++) {
+                const double a = lambda[i], b = lambda[j];
+                lambda[i] = fmin(a, b);
+                lambda[j] = fmax(a, b);
+            }
+            assert_true(test_near(lambda[i] / largest, values[i] / largest, 1e-11));
+        }
+    }
+    assert_true(negative > 50); /* there was something to project */
+}
+
+static void modes_of_a_similarity_are_finite(void **state)
+{
+    (void)state;
+    const double J[4] = {0.6, -0.8, 0.8, 0.6};
+    double lambda[4], Q[16];
+    sl_stretch_density_modes(0.0, J, lambda, Q);
+    assert_true(test_near(lambda[0], 0.0, 1e-14)); /* rotation of a rotation */
+    for (int m = 1; m < 4; m++) {
+        assert_true(test_near(lambda[m], 8.0, 1e-13)); /* (s - 1)^2 terms: 2 + 6 */
+    }
+}
+
+static void softening_bounds_singular_values_and_keeps_directions(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x50f7);
+    int softened = 0;
+    for (int trial = 0; trial < 300 * test_multiplier(); trial++) {
+        double J[4], F[4], g[4] = {1.3, -0.2, 0.4, 0.9}, s[2], f[2], uv[4];
+        random_jacobian(&rng, J);
+        memcpy(F, J, sizeof F);
+        /* J = u g' for two edge vectors u, so that u g'_soft must be F. */
+        const double dg = determinant(g);
+        for (int r = 0; r < 2; r++) {
+            uv[r] = (J[2 * r] * g[3] - J[2 * r + 1] * g[2]) / dg;
+            uv[2 + r] = (J[2 * r + 1] * g[0] - J[2 * r] * g[1]) / dg;
+        }
+        const double cap = test_uniform(&rng, 0.2, 2.5);
+        singular_values(J, s);
+        const double far = fmax(fabs(log(s[0])), fabs(log(s[1])));
+        assert_int_equal(sl_stretch_soften(cap, F, g), far > cap);
+        softened += far > cap;
+        singular_values(F, f);
+        const double t = far > cap ? cap / far : 1.0;
+        assert_true(test_near_rel(f[0], pow(s[0], t), 1e-9) && test_near_rel(f[1], pow(s[1], t), 1e-9));
+        for (int r = 0; r < 2; r++) {
+            assert_true(test_near_rel(F[2 * r], uv[r] * g[0] + uv[2 + r] * g[2], 1e-9));
+            assert_true(test_near_rel(F[2 * r + 1], uv[r] * g[1] + uv[2 + r] * g[3], 1e-9));
+        }
+        /* F = J B with B symmetric positive definite commuting with J'J: same directions. */
+        const double a = J[0] * J[0] + J[2] * J[2], b = J[0] * J[1] + J[2] * J[3], c = J[1] * J[1] + J[3] * J[3];
+        const double p = F[0] * F[0] + F[2] * F[2], q = F[0] * F[1] + F[2] * F[3], r = F[1] * F[1] + F[3] * F[3];
+        assert_true(test_near((b * (p - r) - q * (a - c)) / ((a + c) * (p + r)), 0.0, 1e-9));
+        assert_true(determinant(F) > 0.0);
+    }
+    assert_true(softened > 50 && softened < 300 * test_multiplier());
+}
+
+/* A chart with a distorted, flip-free map. */
+typedef struct fixture {
+    sl_patch *patch;
+    double *uv, *gradient, *force;
+    sl_stretch_rest rest;
+    sl_stretch_system system;
+} fixture;
+
+static fixture make_fixture(uint64_t seed)
+{
+    fixture f = {.patch = chart_hexagon(3, 0.2, chart_bumps, 1.2, seed)};
+    const size_t size = 2 * (size_t)f.patch->nv * sizeof *f.uv;
+    test_rng rng = test_rng_seed(seed);
+    f.uv = malloc(size);
+    f.gradient = malloc(size);
+    f.force = malloc(size);
+    assert_int_equal(sl_tutte(f.patch, SL_TUTTE_UNIFORM, NULL, f.uv), SL_OK);
+    chart_jitter_uv(f.patch, 0.05, f.uv, &rng);
+    assert_int_equal(sl_stretch_rest_init(f.patch, &f.rest), SL_OK);
+    assert_int_equal(sl_stretch_system_init(f.patch, &f.system), SL_OK);
+    return f;
+}
+
+static void free_fixture(fixture *f)
+{
+    sl_stretch_rest_clear(&f->rest);
+    sl_stretch_system_clear(&f->system);
+    sl_patch_free(f->patch);
+    free(f->uv);
+    free(f->gradient);
+    free(f->force);
+}
+
+static void assembled_gradient_matches_differences_of_the_measured_energy(void **state)
+{
+    (void)state;
+    fixture f = make_fixture(0x6fad);
+    for (size_t k = 0; k < SL_COUNTOF(weights); k++) {
+        sl_stretch_assemble(f.patch, &f.rest, weights[k], INFINITY, f.uv, &f.system, f.gradient, f.force);
+        assert_memory_equal(f.gradient, f.force, 2 * (size_t)f.patch->nv * sizeof *f.force);
+        for (int32_t i = 0; i < 2 * f.patch->nv; i++) {
+            const double old = f.uv[i], h = 1e-6;
+            f.uv[i] = old + h;
+            const double up = sl_stretch_measure(&f.rest, f.patch->tri, weights[k], f.uv).energy;
+            f.uv[i] = old - h;
+            const double down = sl_stretch_measure(&f.rest, f.patch->tri, weights[k], f.uv).energy;
+            f.uv[i] = old;
+            assert_true(test_near_rel((up - down) / (2.0 * h), f.gradient[i], 1e-5));
+        }
+    }
+    free_fixture(&f);
+}
+
+/* Sum over triangles of the energy of their softened selves, which are held while uv moves. */
+static void softened_force_is_the_gradient_of_the_softened_energy(void **state)
+{
+    (void)state;
+    fixture f = make_fixture(0x50fa);
+    const double cap = 0.15;
+    sl_stretch_assemble(f.patch, &f.rest, 0.2, cap, f.uv, &f.system, f.gradient, f.force);
+    assert_true(chart_max_diff(f.gradient, f.force, 2 * f.patch->nv) > 0.01);
+    sl_stretch_rest soft;
+    assert_int_equal(sl_stretch_rest_init(f.patch, &soft), SL_OK);
+    for (int32_t t = 0; t < f.patch->nt; t++) {
+        double J[4];
+        sl_stretch_jacobian(&f.rest, f.patch->tri, f.uv, t, J);
+        sl_stretch_soften(cap, J, &soft.gradient[4 * t]);
+    }
+    sl_stretch_assemble(f.patch, &soft, 0.2, INFINITY, f.uv, &f.system, f.gradient, f.gradient);
+    for (int32_t i = 0; i < 2 * f.patch->nv; i++) { /* gradient and force were summed into one array */
+        assert_true(test_near_rel(f.gradient[i], 2.0 * f.force[i], 1e-10));
+    }
+    sl_stretch_rest_clear(&soft);
+    free_fixture(&f);
+}
+
+/* Where no eigenvalue is negative (a map enlarged enough: 2 > 2 (I - d) / d^3) the projected Hessian is the Hessian. */
+static void assembled_hessian_matches_differences_of_the_gradient(void **state)
+{
+    (void)state;
+    fixture f = make_fixture(0x4e55);
+    const int32_t n = 2 * f.patch->nv;
+    for (int32_t i = 0; i < n; i++) {
+        f.uv[i] *= 3.0;
+    }
+    double *H = calloc((size_t)n * (size_t)n, sizeof *H), *up = malloc((size_t)n * sizeof *up);
+    double *down = malloc((size_t)n * sizeof *down);
+    sl_stretch_assemble(f.patch, &f.rest, 0.3, INFINITY, f.uv, &f.system, f.gradient, f.force);
+    for (int32_t j = 0; j < n; j++) {
+        for (int64_t p = f.system.H->colptr[j]; p < f.system.H->colptr[j + 1]; p++) {
+            H[f.system.H->row[p] * n + j] = H[j * n + f.system.H->row[p]] = f.system.H->val[p];
+        }
+    }
+    for (int32_t j = 0; j < n; j++) {
+        const double old = f.uv[j], h = 1e-5;
+        f.uv[j] = old + h;
+        sl_stretch_assemble(f.patch, &f.rest, 0.3, INFINITY, f.uv, &f.system, up, f.force);
+        f.uv[j] = old - h;
+        sl_stretch_assemble(f.patch, &f.rest, 0.3, INFINITY, f.uv, &f.system, down, f.force);
+        f.uv[j] = old;
+        for (int32_t i = 0; i < n; i++) {
+            assert_true(test_near((up[i] - down[i]) / (2.0 * h), H[i * n + j], 1e-6));
+        }
+    }
+    free(H);
+    free(up);
+    free(down);
+    free_fixture(&f);
+}
+
+static void projected_hessian_is_positive_and_gives_a_descent_direction(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        fixture f = make_fixture(0xd15c + seed);
+        const int32_t n = 2 * f.patch->nv;
+        double *direction = malloc((size_t)n * sizeof *direction), slope = 0.0;
+        for (int32_t i = 0; i < n; i++) {
+            f.uv[i] *= 0.4; /* shrunk: many eigenvalues are negative before projection */
+        }
+        sl_stretch_assemble(f.patch, &f.rest, 0.0, INFINITY, f.uv, &f.system, f.gradient, f.force);
+        double *dense = calloc((size_t)n * (size_t)n, sizeof *dense), *values = malloc((size_t)n * sizeof *values);
+        for (int32_t j = 0; j < n; j++) {
+            for (int64_t p = f.system.H->colptr[j]; p < f.system.H->colptr[j + 1]; p++) {
+                dense[f.system.H->row[p] + j * n] = f.system.H->val[p];
+            }
+        }
+        double *residual = calloc((size_t)n, sizeof *residual);
+        assert_int_equal(sl_stretch_direction(&f.system, f.force, direction), SL_OK);
+        for (int32_t i = 0; i < n; i++) {
+            slope += direction[i] * f.gradient[i];
+            residual[i] = f.gradient[i];
+            for (int32_t j = 0; j < n; j++) {
+                residual[i] += (i >= j ? dense[i + j * n] : dense[j + i * n]) * direction[j];
+            }
+        }
+        assert_true(slope < 0.0);
+        for (int32_t i = 0; i < n; i++) { /* the shift is 1e-10 of the diagonal */
+            assert_true(test_near(residual[i], 0.0, 1e-6 * fabs(slope)));
+        }
+        assert_int_equal(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, dense, n, values), 0);
+        assert_true(values[0] > -1e-12 * values[n - 1]);
+        free(direction);
+        free(dense);
+        free(values);
+        free(residual);
+        free_fixture(&f);
+    }
+}
+
+static void measured_l2_is_that_of_the_distortion_measures(void **state)
+{
+    (void)state;
+    fixture f = make_fixture(0x12);
+    double energy = 0.0, area = 0.0;
+    for (int32_t t = 0; t < f.patch->nt;
+         t++) { /* from the edges' inner products: |J|^2 and det J without coordinates */
+        const double *p[3], *u[3];
+        double e[2][3], G[4], K[4], A;
+        for (int k = 0; k < 3; k++) {
+            p[k] = &f.patch->xyz[3 * f.patch->tri[3 * t + k]];
+            u[k] = &f.uv[2 * f.patch->tri[3 * t + k]];
+        }
+        for (int k = 0; k < 3; k++) {
+            e[0][k] = p[1][k] - p[0][k];
+            e[1][k] = p[2][k] - p[0][k];
+        }
+        for (int i = 0; i < 2; i++) {
+            for (int j = 0; j < 2; j++) {
+                G[2 * i + j] = e[i][0] * e[j][0] + e[i][1] * e[j][1] + e[i][2] * e[j][2];
+                K[2 * i + j] = (u[i + 1][0] - u[0][0]) * (u[j + 1][0] - u[0][0]) +
+                               (u[i + 1][1] - u[0][1]) * (u[j + 1][1] - u[0][1]);
+            }
+        }
+        A = sqrt(determinant(G)) / 2.0;
+        const double trace = (K[0] * G[3] + K[3] * G[0] - 2.0 * K[1] * G[1]) / determinant(G); /* tr(inv(G) K) */
+        energy += A * (trace + trace * determinant(G) / determinant(K));
+        area += A;
+    }
+    const sl_stretch_sums sums = sl_stretch_measure(&f.rest, f.patch->tri, 0.0, f.uv);
+    sl_distortion d;
+    assert_int_equal(sl_distortion_measure_indexed(f.patch->nt, f.patch->tri, f.patch->xyz, f.uv, &d), SL_OK);
+    assert_true(test_near_rel(sums.energy, energy / area, 1e-11));
+    assert_true(test_near_rel(sums.l2, d.l2, 1e-11) && d.l2 > 1.05);
+    free_fixture(&f);
+}
+
+static void step_bound_is_where_the_first_triangle_vanishes(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xb0d);
+    int finite = 0;
+    for (int trial = 0; trial < 60 * test_multiplier(); trial++) {
+        fixture f = make_fixture(0xb0d + (uint64_t)trial);
+        const int32_t n = 2 * f.patch->nv;
+        double *direction = malloc((size_t)n * sizeof *direction), *moved = malloc((size_t)n * sizeof *moved);
+        const double size = test_uniform(&rng, 0.001, 2.0);
+        for (int32_t i = 0; i < n; i++) {
+            direction[i] = test_uniform(&rng, -size, size);
+        }
+        const double bound = sl_stretch_step_bound(f.patch, f.uv, direction);
+        for (int k = 1; k <= 101 && isfinite(bound); k++) {
+            const double length = k <= 100 ? 0.9999 * bound * k / 100.0 : 1.0001 * bound;
+            for (int32_t i = 0; i < n; i++) {
+                moved[i] = f.uv[i] + length * direction[i];
+            }
+            assert_int_equal(chart_flips(f.patch, moved) > 0, k > 100);
+            finite++;
+        }
+        assert_true(isinf(sl_stretch_step_bound(f.patch, f.uv, f.uv))); /* growing: never */
+        for (int32_t i = 0; i < n; i++) {
+            direction[i] = -0.25 * f.uv[i]; /* shrinking to a point: everything at once */
+        }
+        assert_true(test_near(sl_stretch_step_bound(f.patch, f.uv, direction), 4.0, 1e-5));
+        memset(direction, 0, (size_t)n * sizeof *direction);
+        assert_true(isinf(sl_stretch_step_bound(f.patch, f.uv, direction)));
+        free(direction);
+        free(moved);
+        free_fixture(&f);
+    }
+    assert_true(finite > 1000);
+}
+
+/* A triangle on a line has no shape: it gets its longest edge and a hundredth of it as height. */
+static void degenerate_triangles_get_a_raised_rest_shape(void **state)
+{
+    (void)state;
+    const double xyz[15] = {0, 0, 0, 1, 0, 0, 0.4, 0, 0, 0.5, -1, 0.2, 0.5, -1, 0.2};
+    const int32_t tri[9] = {0, 1, 2, 0, 3, 1, 3, 4, 1};
+    sl_patch *patch = chart_make(5, xyz, 3, tri);
+    sl_stretch_rest rest;
+    assert_int_equal(sl_stretch_rest_init(patch, &rest), SL_OK);
+    const double area = sqrt(1.04) / 2.0,
+                 total = area + 0.005 + rest.weight[2] * (area + 0.005) / (1.0 - rest.weight[2]);
+    assert_true(rest.measured[0] == 0 && rest.measured[1] == 1 && rest.measured[2] == 0);
+    assert_true(test_near(rest.weight[0] * total, 0.005, 1e-14));
+    assert_true(test_near(rest.measured_weight, rest.weight[1], 1e-15));
+    assert_true(test_near(rest.weight[0] + rest.weight[1] + rest.weight[2], 1.0, 1e-15));
+    double J[4];
+    int32_t base = 0;
+    while (patch->xyz[3 * patch->tri[base]] != 0.0) { /* the corner at the origin */
+        base++;
+    }
+    double uv[10];
+    for (int v = 0; v < 5; v++) { /* as it lies, raised by the same height: an isometry */
+        const double *x = &patch->xyz[3 * v];
+        uv[2 * v] = x[0];
+        uv[2 * v + 1] = x[0] == 0.4 ? 0.01 : x[1];
+    }
+    sl_stretch_jacobian(&rest, patch->tri, uv, base / 3, J);
+    assert_true(test_near(determinant(J), 1.0, 1e-13) && test_near(J[0] * J[0] + J[2] * J[2], 1.0, 1e-13));
+    sl_stretch_rest_clear(&rest);
+    sl_patch_free(patch);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(density_is_the_formula_in_singular_values),
+        cmocka_unit_test(density_gradient_matches_central_differences),
+        cmocka_unit_test(density_modes_are_the_eigenpairs_lapacke_finds),
+        cmocka_unit_test(modes_of_a_similarity_are_finite),
+        cmocka_unit_test(softening_bounds_singular_values_and_keeps_directions),
+        cmocka_unit_test(assembled_gradient_matches_differences_of_the_measured_energy),
+        cmocka_unit_test(softened_force_is_the_gradient_of_the_softened_energy),
+        cmocka_unit_test(assembled_hessian_matches_differences_of_the_gradient),
+        cmocka_unit_test(projected_hessian_is_positive_and_gives_a_descent_direction),
+        cmocka_unit_test(measured_l2_is_that_of_the_distortion_measures),
+        cmocka_unit_test(step_bound_is_where_the_first_triangle_vanishes),
+        cmocka_unit_test(degenerate_triangles_get_a_raised_rest_shape),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
