@@ -20,7 +20,7 @@ typedef struct sl_repair_report {
     int32_t isolated_faces;           /* duplicate + degenerate */
     int64_t genus;                    /* sum over the components */
     int32_t nonmanifold_edges;        /* edges of three and more facets, cut */
-    int32_t bowtie_vertices;          /* input vertices split into fans */
+    int32_t bowtie_vertices;          /* input vertices whose facets meet in the point only, split into fans */
     int32_t reversed_faces;           /* reoriented to agree with their component */
     int32_t one_sided_components;     /* not orientable: cut until they are */
     int32_t one_sided_cuts;           /* edges cut for that */
@@ -42,9 +42,15 @@ typedef struct sl_repair_report {
  *   one-sided component             cut along the edges where a breadth-first orientation contradicts itself
  *   duplicate, degenerate facet     kept, but without neighbours
  *
- * Coordinates are normalised by a translation and a power of two. *out and *report are owned by the caller; report may
- * be NULL. SL_BAD_INPUT (not finite, an index out of range, a facet of fewer than 3 corners, no facet at all: diag
- * names the element), SL_OUT_OF_MEMORY. Deterministic. O(corners log corners). */
+ * A vertex at the end of a cut edge is split too, but is no bowtie when its fans hung together along such edges. An
+ * isolated facet has vertices of its own wherever the surface uses the input's. Degenerate: a repeated corner, or a
+ * vector area within rounding of 0; duplicate: the same set of corners as an earlier facet that is not isolated. Each
+ * component keeps the winding that the larger part of its area has.
+ *
+ * Coordinates are normalised by a translation and a power of two, by the bounding box of the vertices that facets use;
+ * unused vertices are moved to that box's surface where they lie outside. *out and *report are owned by the caller;
+ * report may be NULL. SL_BAD_INPUT (not finite, an index out of range, a facet of fewer than 3 corners, no facet at
+ * all: diag names the element), SL_OUT_OF_MEMORY. Deterministic. O(corners log corners). */
 SL_NODISCARD sl_status sl_mesh_build(const sl_polygons *polygons, sl_mesh **out, sl_repair_report *report,
                                      sl_diag *diag);
 

@@ -22,7 +22,7 @@ enum {
 
 typedef struct sl_mesh {
     int32_t nv, nf, nh;
-    double *xyz;           /* nv x 3, normalised: (input - centre) * scale, largest extent in (1/2, 1] */
+    double *xyz;           /* nv x 3, normalised: (input - centre) * scale, largest extent in (1/2, 1] (0: one point) */
     int32_t *face_first;   /* nf + 1 */
     int32_t *origin;       /* nh: vertex a halfedge starts at */
     int32_t *face;         /* nh: facet of a halfedge */
@@ -30,7 +30,7 @@ typedef struct sl_mesh {
     int32_t *sew;          /* nh */
     int32_t *input_vertex; /* nv: vertex of the input (several mesh vertices share one where a bowtie was split) */
     uint8_t *face_flags;   /* nf */
-    double centre[3];      /* centre of the input's bounding box, in input units */
+    double centre[3];      /* centre of the bounding box of the input's used vertices, in input units */
     double scale;          /* a power of two */
 } sl_mesh;
 

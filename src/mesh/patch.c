@@ -68,10 +68,10 @@ sl_status sl_patch_finish(sl_patch *p, const double *xyz)
         sl_free(fan);
         return SL_OUT_OF_MEMORY;
     }
-    /* Backwards, so that the first corner has the last word. */
+    /* Backwards: the first corner has the last word, but for the border halfedge, of which a fan has one at most. */
     for (int32_t c = 3 * p->nt - 1; c >= 0; c--) {
         const int32_t v = fan[c];
-        if (p->twin[c] < 0 || p->border[v] == 0) {
+        if (p->border[v] == 0) {
             p->outgoing[v] = c;
         }
         p->border[v] |= p->twin[c] < 0;

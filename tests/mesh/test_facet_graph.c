@@ -28,7 +28,8 @@ static bool glued(const sl_mesh *m, int32_t f, int32_t g)
 /* Are the facets at positions i and j to be one node? */
 static bool one_node(const sl_mesh *m, int32_t i, int32_t j, bool pairing)
 {
-    return i == j || (pairing && partner[faces[i]] == faces[j] && glued(m, faces[i], faces[j]));
+    return i == j ||
+           (pairing && partner[faces[i]] == faces[j] && partner[faces[j]] == faces[i] && glued(m, faces[i], faces[j]));
 }
 
 static void check_nodes(const sl_mesh *m, int32_t n, bool pairing, const sl_facet_graph *g)
@@ -86,7 +87,7 @@ static void check_edges(const sl_mesh *m, int32_t n, const sl_facet_graph *g)
     }
 }
 
-/* Random partners: some good pairs, some not glued, some one-sided, as an old pairing is after cuts. */
+/* Random partners: good pairs, some that are not glued, some that are not mutual. */
 static void random_partners(const sl_mesh *m, test_rng *rng)
 {
     for (int32_t f = 0; f < m->nf; f++) {
@@ -98,6 +99,11 @@ static void random_partners(const sl_mesh *m, test_rng *rng)
             test_index(rng, 4) == 0) {
             partner[f] = g;
             partner[g] = f;
+        }
+    }
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (partner[m->face[h]] < 0 && m->twin[h] >= 0 && test_index(rng, 8) == 0) {
+            partner[m->face[h]] = m->face[m->twin[h]]; /* not returned */
         }
     }
 }

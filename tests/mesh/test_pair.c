@@ -102,6 +102,75 @@ static void irregular_triangles_are_not_called_quads(void **state)
     }
 }
 
+/* Position of the triangle with directed edge a -> b, *k its corner; -1 = none. */
+static int32_t triangle_with_edge(int32_t a, int32_t b, int32_t *k)
+{
+    for (int32_t c = 0; c < 3 * s.nf; c++) {
+        if (s.index[c] == a && s.index[c % 3 == 2 ? c - 2 : c + 1] == b) {
+            *k = c;
+            return c / 3;
+        }
+    }
+    return -1;
+}
+
+static double angle_at(int32_t apex, int32_t a, int32_t b)
+{
+    const double *p = s.xyz + 3 * apex, *q = s.xyz + 3 * a, *r = s.xyz + 3 * b;
+    const double u[2] = {q[0] - p[0], q[1] - p[1]}, v[2] = {r[0] - p[0], r[1] - p[1]};
+    return atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+}
+
+/* A Delaunay triangulation of jittered points, by flips: well-shaped triangles that never were quads. */
+static void delaunay_triangles(test_rng *rng, int32_t n)
+{
+    soup_grid(&s, rng, SOUP_SHEET, n, n, 1.0);
+    for (int32_t v = 0; v < s.nv; v++) {
+        const int32_t i = v / (n + 1), j = v % (n + 1);
+        const double jitter = i > 0 && i < n && j > 0 && j < n ? 0.45 : 0.0;
+        s.xyz[3 * v] = i + test_uniform(rng, -jitter, jitter);
+        s.xyz[3 * v + 1] = j + test_uniform(rng, -jitter, jitter);
+        s.xyz[3 * v + 2] = 0.0;
+    }
+    bool flipped = true;
+    for (int pass = 0; pass < 100 && flipped; pass++) {
+        flipped = false;
+        for (int32_t c = 0; c < 3 * s.nf; c++) {
+            const int32_t next = c % 3 == 2 ? c - 2 : c + 1, prev = c % 3 == 0 ? c + 2 : c - 1;
+            const int32_t a = s.index[c], b = s.index[next], x = s.index[prev];
+            int32_t d = 0;
+            if (triangle_with_edge(b, a, &d) < 0) {
+                continue;
+            }
+            const int32_t d_prev = d % 3 == 0 ? d + 2 : d - 1, y = s.index[d_prev];
+            if (fabs(angle_at(x, a, b)) + fabs(angle_at(y, b, a)) > TEST_PI + 1e-9) {
+                s.index[next] = y; /* a b x, b a y -> a y x, b x y */
+                s.index[d % 3 == 2 ? d - 2 : d + 1] = x;
+                flipped = true;
+            }
+        }
+    }
+}
+
+static void well_shaped_triangles_of_irregular_valence_are_not_called_quads(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x9a18);
+    for (int trial = 0; trial < 3 * test_multiplier(); trial++) {
+        delaunay_triangles(&rng, 20);
+        sl_mesh *m = soup_build(&s, NULL);
+        const double fraction = check_pairing(m);
+        double shape = 0.0;
+        for (int32_t h = 0; h < m->nh; h++) {
+            const bool pair = m->twin[h] >= 0 && partner[m->face[h]] == m->face[m->twin[h]];
+            shape += pair && sl_pair_score(m, h) >= 0.5 ? 1.0 / m->nf : 0.0;
+        }
+        assert_true(fraction < 0.75);
+        assert_true(fraction < shape - 0.05);
+        sl_mesh_free(m);
+    }
+}
+
 /* Heaviest matching of the triangles from f on, by trying everything. */
 static double heaviest(const sl_mesh *m, int32_t f, bool *taken)
 {
@@ -161,6 +230,58 @@ static void small_pairings_are_the_heaviest(void **state)
         sl_mesh_free(m);
     }
     assert_true(optimal >= trials * 9 / 10);
+}
+
+static double path_best(const double *weight, int32_t n, int32_t forced, int32_t barred)
+{
+    double with = -HUGE_VAL, without = 0.0; /* best over the edges so far, the last one used or not */
+    for (int32_t e = 0; e < n; e++) {
+        const double use = e == barred ? -HUGE_VAL : without + weight[e];
+        const double skip = e == forced ? -HUGE_VAL : fmax(with, without);
+        with = use;
+        without = skip;
+    }
+    return fmax(with, without);
+}
+
+/* On a strip, whose dual graph is a path, the belief in an edge is what the best matching with it has over the best
+ * without it; both by dynamic programming. */
+static void beliefs_on_strips_are_exact(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x9a19);
+    for (int trial = 0; trial < 100 * test_multiplier(); trial++) {
+        const int32_t nt = 2 + test_index(&rng, 14);
+        soup_clear(&s);
+        for (int32_t k = 0; k < nt + 2; k++) {
+            soup_vertex(&s, 0.9 * k, k % 2 == 0 ? 0.0 : 1.1, test_uniform(&rng, 0.0, 0.1));
+        }
+        for (int32_t k = 0; k < nt; k++) {
+            soup_face(&s, 3, (int32_t[]){k, k % 2 == 0 ? k + 2 : k + 1, k % 2 == 0 ? k + 1 : k + 2});
+        }
+        sl_mesh *m = soup_build(&s, NULL);
+        double score[3 * 16], belief[3 * 16], weight[16];
+        for (int32_t h = 0; h < m->nh; h++) {
+            score[h] = 0.0;
+        }
+        for (int32_t h = 0; h < m->nh; h++) {
+            if (m->twin[h] >= 0 && m->face[m->twin[h]] == m->face[h] + 1) {
+                score[h] = score[m->twin[h]] = test_uniform(&rng, 0.2, 1.0);
+                weight[m->face[h]] = 2.0 - (1.0 - score[h]) * (1.0 - score[h]);
+            }
+        }
+        assert_int_equal(sl_pair_beliefs(m, score, belief), SL_OK);
+        for (int32_t h = 0; h < m->nh; h++) {
+            if (score[h] == 0.0) {
+                assert_true(belief[h] == -HUGE_VAL);
+                continue;
+            }
+            const int32_t f = m->face[h], g = m->face[m->twin[h]], e = f < g ? f : g;
+            const double expect = path_best(weight, nt - 1, e, -1) - path_best(weight, nt - 1, -1, e);
+            assert_true(test_near(belief[h], expect, 64 * 0x1p-20));
+        }
+        sl_mesh_free(m);
+    }
 }
 
 /* A strip of four triangles whose middle pair is matched: the two at its ends are freed by flipping the path. */
@@ -241,7 +362,9 @@ int main(void)
         cmocka_unit_test(quads_stay_alone_among_triangles),
         cmocka_unit_test(a_mesh_of_quads_has_nothing_to_pair),
         cmocka_unit_test(irregular_triangles_are_not_called_quads),
+        cmocka_unit_test(well_shaped_triangles_of_irregular_valence_are_not_called_quads),
         cmocka_unit_test(small_pairings_are_the_heaviest),
+        cmocka_unit_test(beliefs_on_strips_are_exact),
         cmocka_unit_test(an_augmenting_path_pairs_the_ends_of_a_strip),
         cmocka_unit_test(the_score_measures_angles_and_the_fold),
     };
