@@ -1,5 +1,6 @@
 #include "draw/light.h"
 #include "base/memory.h"
+#include "draw/light_internal.h"
 #include "draw/visibility.h"
 #include "geom/vec3.h"
 
@@ -8,26 +9,8 @@
 static const double lift_texels = 1.5; /* a point is lifted off its own facet by this many texels of a map */
 static const double bias_texels = 1.0; /* and may be this much deeper than what the map shows */
 static const double map_margin = 2.0;  /* texels around the scene */
-static const float dimmed = 0.75f;     /* part of the ambient light that the sky's openness scales */
-
-/* A light and its view of the scene: depth in 1/65535 of the scene's diameter, 65535 = nothing. */
-typedef struct mapped_light {
-    sl_light light;
-    double right[3], up[3];
-    uint16_t *depth; /* NULL without shadow */
-} mapped_light;
-
-struct sl_light_rig {
-    int32_t lights;
-    mapped_light *light;
-    double scene_up[3];
-    float top_rgb[3], bottom_rgb[3];
-    float sky_total; /* brightness of the sky lights on a surface facing up */
-    int32_t side;
-    double centre[3], radius;
-    double texel; /* scene units */
-    uint16_t *depth;
-};
+static const double golden_angle = 2.399963229728653;
+static const float dimmed = 0.75f; /* part of the ambient light that the sky's openness scales */
 
 typedef struct map_task {
     sl_light_rig *rig;
@@ -59,23 +42,25 @@ static void bound(sl_light_rig *rig, int32_t nv, const double *xyz)
     rig->texel = 2.0 * rig->radius / (rig->side - 2.0 * map_margin);
 }
 
-/* Two axes across the light's direction. */
-static void set_axes(mapped_light *m)
+/* Two axes across the light's direction, turned by another angle for each light, so that the steps of their shadows'
+ * edges do not add up. */
+static void set_axes(sl_mapped_light *m, int32_t number)
 {
     const double *d = m->light.direction;
     const int least = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2) : (fabs(d[1]) < fabs(d[2]) ? 1 : 2);
-    double axis[3] = {0.0, 0.0, 0.0}, forward[3];
+    double axis[3] = {0.0, 0.0, 0.0}, side[3], top[3], forward[3];
     axis[least] = 1.0;
-    sl_vec3_cross(axis, d, m->right);
-    const double length = sl_vec3_norm(m->right);
+    sl_vec3_cross(axis, d, side);
+    sl_vec3_cross(d, side, top);
+    const double length = sl_vec3_norm(side), c = cos(golden_angle * number), n = sin(golden_angle * number);
     for (int k = 0; k < 3; k++) {
-        m->right[k] /= length;
+        m->right[k] = (c * side[k] + n * top[k]) / length;
         forward[k] = -d[k];
     }
     sl_vec3_cross(m->right, forward, m->up);
 }
 
-static sl_camera map_camera(const sl_light_rig *rig, const mapped_light *m)
+static sl_camera map_camera(const sl_light_rig *rig, const sl_mapped_light *m)
 {
     sl_camera c = {.focal = 1.0 / (rig->side * rig->texel), .near_depth = 0.0, .perspective = false};
     for (int k = 0; k < 3; k++) {
@@ -88,14 +73,14 @@ static sl_camera map_camera(const sl_light_rig *rig, const mapped_light *m)
 }
 
 /* Depth along the light of a point, in [0, 65534]. */
-static double map_depth(const sl_light_rig *rig, const mapped_light *m, const double point[3])
+static double map_depth(const sl_light_rig *rig, const sl_mapped_light *m, const double point[3])
 {
     double d[3];
     sl_vec3_sub(point, rig->centre, d);
     return (rig->radius - sl_vec3_dot(d, m->light.direction)) / (2.0 * rig->radius) * 65534.0;
 }
 
-static sl_status render_map(const map_task *task, mapped_light *m)
+static sl_status render_map(const map_task *task, sl_mapped_light *m)
 {
     sl_status status = SL_OK;
     const sl_light_rig *rig = task->rig;
@@ -125,7 +110,7 @@ static void render_maps(void *user, int64_t begin, int64_t end, int32_t chunk)
     (void)chunk;
     const map_task *task = user;
     for (int64_t i = begin; i < end; i++) {
-        mapped_light *m = &task->rig->light[i];
+        sl_mapped_light *m = &task->rig->light[i];
         task->status[i] = m->depth != NULL ? render_map(task, m) : SL_OK;
     }
 }
@@ -144,9 +129,9 @@ static sl_status allocate(sl_light_rig *rig, const sl_light_rig_def *def)
     }
     uint16_t *next = rig->depth;
     for (int32_t i = 0; i < def->lights; i++) {
-        mapped_light *m = &rig->light[i];
+        sl_mapped_light *m = &rig->light[i];
         m->light = def->light[i];
-        set_axes(m);
+        set_axes(m, i);
         if (m->light.shadow) {
             m->depth = next;
             next += texels;
@@ -155,20 +140,9 @@ static sl_status allocate(sl_light_rig *rig, const sl_light_rig_def *def)
     return SL_OK;
 }
 
-static float brightness(const float rgb[3])
+float sl_brightness(const float rgb[3])
 {
     return (rgb[0] + rgb[1] + rgb[2]) / 3.0f;
-}
-
-static void sum_sky(sl_light_rig *rig)
-{
-    rig->sky_total = 0.0f;
-    for (int32_t i = 0; i < rig->lights; i++) {
-        const double cosine = sl_vec3_dot(rig->light[i].light.direction, rig->scene_up);
-        if (rig->light[i].light.sky && cosine > 0.0) {
-            rig->sky_total += brightness(rig->light[i].light.rgb) * (float)cosine;
-        }
-    }
 }
 
 sl_status sl_light_rig_create(const sl_light_rig_def *def, int32_t nv, const double *xyz, int32_t nt,
@@ -192,7 +166,6 @@ sl_status sl_light_rig_create(const sl_light_rig_def *def, int32_t nv, const dou
     memcpy(rig->bottom_rgb, def->bottom_rgb, sizeof rig->bottom_rgb);
     SL_TRY(allocate(rig, def));
     bound(rig, nv, xyz);
-    sum_sky(rig);
     sl_parallel_for(context, rig->lights, 1, render_maps, &task);
     for (int32_t i = 0; i < rig->lights; i++) {
         SL_TRY(task.status[i]);
@@ -214,14 +187,21 @@ void sl_light_rig_free(sl_light_rig *rig)
     }
 }
 
-/* Part of a light that reaches the point: the four nearest texels compared, weighted bilinearly.
- * Source: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps". */
-static float reaching(const sl_light_rig *rig, const mapped_light *m, const double point[3])
+/* Position in texels, relative to texel centres. */
+static void map_position(const sl_light_rig *rig, const sl_mapped_light *m, const double point[3], double *x, double *y)
 {
     double d[3];
     sl_vec3_sub(point, rig->centre, d);
-    const double x = 0.5 * rig->side + sl_vec3_dot(d, m->right) / rig->texel - 0.5;
-    const double y = 0.5 * rig->side - sl_vec3_dot(d, m->up) / rig->texel - 0.5;
+    *x = 0.5 * rig->side + sl_vec3_dot(d, m->right) / rig->texel - 0.5;
+    *y = 0.5 * rig->side - sl_vec3_dot(d, m->up) / rig->texel - 0.5;
+}
+
+/* Part of a light that reaches the point: the four nearest texels compared, weighted bilinearly.
+ * Source: Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps". */
+static float reaching(const sl_light_rig *rig, const sl_mapped_light *m, const double point[3])
+{
+    double x, y;
+    map_position(rig, m, point, &x, &y);
     if (!(x >= 0.0 && y >= 0.0 && x < rig->side - 1.0 && y < rig->side - 1.0)) {
         return 1.0f;
     }
@@ -244,7 +224,7 @@ void sl_light_rig_shine(const sl_light_rig *rig, const double point[3], const do
     }
     float sky = 0.0f, open = 0.0f;
     for (int32_t i = 0; i < rig->lights; i++) {
-        const mapped_light *m = &rig->light[i];
+        const sl_mapped_light *m = &rig->light[i];
         const float cosine = (float)sl_vec3_dot(normal, m->light.direction);
         if (cosine <= 0.0f) {
             continue;
@@ -263,15 +243,15 @@ void sl_light_rig_shine(const sl_light_rig *rig, const double point[3], const do
     }
 }
 
-float sl_light_rig_ground(const sl_light_rig *rig, const double point[3])
+bool sl_map_texel(const sl_light_rig *rig, const sl_mapped_light *m, const double point[3], uint16_t *texel,
+                  double *depth)
 {
-    float open = 0.0f;
-    for (int32_t i = 0; i < rig->lights; i++) {
-        const mapped_light *m = &rig->light[i];
-        const float cosine = (float)sl_vec3_dot(rig->scene_up, m->light.direction);
-        if (cosine > 0.0f && m->light.sky) {
-            open += brightness(m->light.rgb) * cosine * (m->depth != NULL ? reaching(rig, m, point) : 1.0f);
-        }
+    double x, y;
+    map_position(rig, m, point, &x, &y);
+    if (!(x >= -0.5 && y >= -0.5 && x < rig->side - 0.5 && y < rig->side - 0.5)) {
+        return false;
     }
-    return rig->sky_total > 0.0f ? open / rig->sky_total : 1.0f;
+    *texel = m->depth[(int64_t)(y + 0.5) * rig->side + (int64_t)(x + 0.5)];
+    *depth = map_depth(rig, m, point);
+    return true;
 }

@@ -35,8 +35,4 @@ void sl_light_rig_free(sl_light_rig *rig); /* NULL is a no-op */
 void sl_light_rig_shine(const sl_light_rig *rig, const double point[3], const double normal[3], const double facing[3],
                         float rgb[3]);
 
-/* As sl_light_rig_shine for the whole sky free, divided into it: what is left of the light on open ground facing up
- * once the scene stands on it, in [0, 1]. */
-float sl_light_rig_ground(const sl_light_rig *rig, const double point[3]);
-
 #endif

@@ -10,11 +10,11 @@ static const float shoulder = 0.80f;     /* brighter light is compressed, so tha
 
 sl_material sl_material_default(void)
 {
-    return (sl_material){.base_rgb = {0.62f, 0.62f, 0.62f},
+    return (sl_material){.base_rgb = {0.52f, 0.52f, 0.51f},
                          .missing_rgb = {0.35f, 0.35f, 0.35f},
                          .contour = (double)NAN,
                          .checks = 32.0,
-                         .check_shade = 0.62f,
+                         .check_shade = 0.68f,
                          .flag_rgb = {0.80f, 0.02f, 0.02f},
                          .back_rgb = {0.20f, 0.21f, 0.24f},
                          .value_hi = 1.0,
@@ -37,8 +37,6 @@ typedef struct shader {
     const float *background;
     int32_t scale;
     lit_sample cache;
-    bool ground_known;
-    float ground_part;
 } shader;
 
 static void to_scene_vector(const sl_camera *c, const double eye[3], double out[3])
@@ -112,29 +110,16 @@ static void light(shader *s, const sl_hit *hit, float rgb[3])
     memcpy(cache->rgb, rgb, sizeof cache->rgb);
 }
 
-/* The shadow of the scene on the ground seen at a background sample; one answer a pixel. */
-static float ground_part(shader *s, double sx, double sy)
+/* What the ground's shadow leaves of the background at a sample. */
+static float ground_part(const shader *s, double sx, double sy)
 {
-    if (s->ground_known) {
-        return s->ground_part;
-    }
     const sl_screen *screen = s->screen;
-    double origin[3], direction[3], o[3], d[3], from[3];
+    double origin[3], direction[3], o[3], d[3];
     sl_camera_ray(&screen->camera, screen->width, screen->height, sx, sy, origin, direction);
     to_scene_vector(&screen->camera, origin, o);
     to_scene_vector(&screen->camera, direction, d);
     sl_vec3_add(o, screen->camera.eye, o);
-    sl_vec3_sub(s->ground->point, o, from);
-    const double slope = sl_vec3_dot(d, s->ground->up), height = sl_vec3_dot(from, s->ground->up);
-    s->ground_part = 1.0f;
-    if (slope < 0.0 && height < 0.0) {
-        const double t = height / slope;
-        const double point[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-        const float left = sl_light_rig_ground(s->rig, point);
-        s->ground_part = 1.0f - s->ground->strength * (1.0f - left);
-    }
-    s->ground_known = true;
-    return s->ground_part;
+    return sl_ground_seen(s->ground, o, d);
 }
 
 static void shade_sample(shader *s, uint64_t zid, int32_t x, int32_t y, float rgb[3])
@@ -142,7 +127,7 @@ static void shade_sample(shader *s, uint64_t zid, int32_t x, int32_t y, float rg
     const int32_t t = sl_visible_triangle(zid);
     sl_hit hit;
     if (t < 0 || !sl_hit_at(s->screen, t, x + 0.5, y + 0.5, &hit)) {
-        const float part = s->ground->visible ? ground_part(s, x + 0.5, y + 0.5) : 1.0f;
+        const float part = s->ground != NULL ? ground_part(s, x + 0.5, y + 0.5) : 1.0f;
         for (int k = 0; k < 3; k++) {
             rgb[k] = part * s->background[k];
         }
@@ -167,7 +152,6 @@ void sl_shade(const sl_screen *screen, const sl_visibility *window, const sl_mat
     for (int32_t py = 0; py < window->height; py += scale) {
         for (int32_t px = 0; px < window->width; px += scale) {
             s.cache.valid = false;
-            s.ground_known = false;
             for (int32_t k = 0; k < scale * scale; k++) {
                 const int32_t x = px + k % scale, y = py + k / scale;
                 if (x < window->width && y < window->height) {

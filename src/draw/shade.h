@@ -3,6 +3,7 @@
 #ifndef SL_DRAW_SHADE_H
 #define SL_DRAW_SHADE_H
 
+#include "draw/ground.h"
 #include "draw/light.h"
 #include "draw/visibility.h"
 
@@ -29,20 +30,13 @@ typedef struct sl_material {
     bool lit;          /* false: colours as they are (UV space) */
 } sl_material;
 
-/* A place for the shadow of the scene: the plane through `point` facing `up`. */
-typedef struct sl_ground {
-    bool visible;
-    double point[3], up[3];
-    float strength; /* 0 .. 1 */
-} sl_ground;
-
 /* A plain grey material without arrays; contour NaN, lit. */
 sl_material sl_material_default(void);
 
 /* Colours the samples of the window: lit material where a triangle is, background (dimmed by the ground's shadow)
  * elsewhere. scale = samples per pixel side: light is looked up once a pixel where the surface is smooth there; windows
- * must start at whole pixels. rig may be NULL when the material is not lit and no ground is visible. samples: 3 floats
- * each, width * height of the window. Writes no NaN whatever the arrays hold. Allocates nothing. One thread. */
+ * must start at whole pixels. rig may be NULL when the material is not lit, ground where there is none. samples: 3
+ * floats each, width * height of the window. Writes no NaN whatever the arrays hold. Allocates nothing. One thread. */
 void sl_shade(const sl_screen *screen, const sl_visibility *window, const sl_material *material,
               const sl_light_rig *rig, const sl_ground *ground, const float background[3], int32_t scale,
               float *samples);

@@ -22,13 +22,13 @@ static const stop heat[] = {{0.97, 0.020, 95}, {0.88, 0.100, 85}, {0.78, 0.150, 
                             {0.57, 0.180, 32}, {0.45, 0.150, 20}, {0.33, 0.100, 10}};
 
 /* By hand: twelve colours with neighbours far apart. */
-static const stop palette[] = {{0.72, 0.110, 250}, {0.80, 0.125, 78},  {0.74, 0.125, 150}, {0.68, 0.150, 25},
-                               {0.76, 0.095, 305}, {0.84, 0.130, 112}, {0.78, 0.095, 200}, {0.74, 0.130, 350},
-                               {0.66, 0.095, 275}, {0.78, 0.120, 52},  {0.70, 0.085, 172}, {0.86, 0.075, 225}};
-static const double levels[] = {0.74, 0.84, 0.66};
+static const stop palette[] = {{0.76, 0.100, 250}, {0.86, 0.115, 82},  {0.80, 0.115, 152}, {0.74, 0.130, 26},
+                               {0.80, 0.090, 305}, {0.88, 0.120, 114}, {0.83, 0.085, 200}, {0.79, 0.110, 352},
+                               {0.71, 0.095, 278}, {0.82, 0.110, 56},  {0.75, 0.080, 175}, {0.89, 0.060, 228}};
+static const double levels[] = {0.79, 0.87, 0.71};
 static const double golden_angle = 137.50776405003785;
 static const double first_hue = 21.0;
-static const double palette_chroma = 0.115;
+static const double palette_chroma = 0.105;
 
 static stop between(const stop *stops, int32_t count, double t)
 {

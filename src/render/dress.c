@@ -8,7 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double crease_degrees = 40.0;
+/* Coarse meshes are modelled: they have creases. Dense ones are mostly scans, whose noise must not be taken for
+ * creases, and their facets are so small that a real edge stays sharp without being split. */
+static const double coarse_crease = 40.0, dense_crease = 75.0; /* degrees */
+static const double coarse_facets = 20000.0, dense_facets = 60000.0;
 static const double same_uv = 1e-9; /* closer UVs are one */
 
 static bool uv_equal(const double *a, const double *b)
@@ -142,6 +145,12 @@ static sl_status set_values(const sl_scene *s, sl_dressing *d)
     return SL_OK;
 }
 
+static double crease_degrees(int32_t facets)
+{
+    const double t = fmin(fmax((facets - coarse_facets) / (dense_facets - coarse_facets), 0.0), 1.0);
+    return coarse_crease + t * (dense_crease - coarse_crease);
+}
+
 sl_status sl_dress(const sl_scene *scene, bool smooth, sl_dressing *dressing)
 {
     sl_status status = SL_OK;
@@ -156,7 +165,7 @@ sl_status sl_dress(const sl_scene *scene, bool smooth, sl_dressing *dressing)
             status = SL_OUT_OF_MEMORY;
             goto cleanup;
         }
-        SL_TRY(sl_corner_normals(scene->mesh, crease_degrees, dressing->normal));
+        SL_TRY(sl_corner_normals(scene->mesh, crease_degrees(scene->mesh->nf), dressing->normal));
     }
 cleanup:
     if (status != SL_OK) {

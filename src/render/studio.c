@@ -8,13 +8,13 @@ enum { KEY_LIGHTS = 20, PLAIN_LIGHTS = 2, MAP_SIDE = 384 };
 
 static const double degree = 0.017453292519943295;
 static const double golden_angle = 2.399963229728653;
-static const double key_spread = 0.16;  /* radius of the key light's disc, seen from the scene [rad] */
+static const double key_spread = 0.20;  /* radius of the key light's disc, seen from the scene [rad] */
 static const double lowest_sky = -0.15; /* sine of the elevation where the sky ends */
-static const float key_rgb[3] = {0.70f, 0.675f, 0.64f};
-static const float fill_rgb[3] = {0.13f, 0.14f, 0.16f};
-static const float rim_rgb[3] = {0.20f, 0.20f, 0.21f};
-static const float sky_rgb[3] = {0.46f, 0.48f, 0.51f}; /* irradiance on a surface facing up under the open sky */
-static const float ground_strength = 0.75f;
+static const float key_rgb[3] = {0.86f, 0.83f, 0.79f};
+static const float fill_rgb[3] = {0.10f, 0.11f, 0.13f};
+static const float rim_rgb[3] = {0.22f, 0.22f, 0.23f};
+static const float sky_rgb[3] = {0.40f, 0.42f, 0.45f}; /* irradiance on a surface facing up under the open sky */
+static const double ground_strength = 0.66;
 
 /* Axes of the scene and the camera's direction on the ground. */
 typedef struct stage_axes {
@@ -75,8 +75,8 @@ static void add_sky(const stage_axes *a, int32_t count, sl_light *light)
 static void add_key(const stage_axes *a, int32_t count, sl_light *light)
 {
     double centre[3], side[3], top[3];
-    aim(a, -38.0, 48.0, centre);
-    aim(a, 52.0, 0.0, side);
+    aim(a, -42.0, 54.0, centre);
+    aim(a, 48.0, 0.0, side);
     sl_vec3_cross(centre, side, top);
     for (int32_t i = 0; i < count; i++) {
         const double radius = count > 1 ? key_spread * sqrt((i + 0.5) / count) : 0.0, turn = golden_angle * i;
@@ -117,15 +117,14 @@ sl_status sl_studio_create(const sl_camera *camera, int32_t up_axis, int32_t sky
     return status;
 }
 
-sl_ground sl_studio_ground(int32_t up_axis, const double *xyz, int32_t nt, const int32_t *tri)
+sl_status sl_studio_ground(const sl_light_rig *rig, int32_t up_axis, const double *xyz, int32_t nt, const int32_t *tri,
+                           const sl_context *context, sl_ground **out)
 {
-    sl_ground ground = {.strength = ground_strength};
-    double lowest = INFINITY;
+    double point[3] = {0.0, 0.0, 0.0};
+    *out = NULL;
+    point[up_axis] = INFINITY;
     for (int64_t k = 0; k < 3 * (int64_t)nt; k++) {
-        lowest = fmin(lowest, xyz[3 * (int64_t)tri[k] + up_axis]);
+        point[up_axis] = fmin(point[up_axis], xyz[3 * (int64_t)tri[k] + up_axis]);
     }
-    ground.up[up_axis] = 1.0;
-    ground.point[up_axis] = lowest;
-    ground.visible = isfinite(lowest);
-    return ground;
+    return isfinite(point[up_axis]) ? sl_ground_create(rig, point, ground_strength, context, out) : SL_OK;
 }

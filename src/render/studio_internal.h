@@ -13,7 +13,8 @@ SL_NODISCARD sl_status sl_studio_create(const sl_camera *camera, int32_t up_axis
                                         const double *xyz, int32_t nt, const int32_t *tri, const sl_context *context,
                                         sl_light_rig **out);
 
-/* The plane under the lowest vertex in use. */
-sl_ground sl_studio_ground(int32_t up_axis, const double *xyz, int32_t nt, const int32_t *tri);
+/* The ground under the lowest vertex in use; *out is NULL when nothing stands on it. */
+SL_NODISCARD sl_status sl_studio_ground(const sl_light_rig *rig, int32_t up_axis, const double *xyz, int32_t nt,
+                                        const int32_t *tri, const sl_context *context, sl_ground **out);
 
 #endif

@@ -124,11 +124,10 @@ static sl_status draw_charts(const sl_scene *scene, const sl_picture *picture, c
     }
     sl_material material = sl_dressed_material(scene, dressing);
     material.lit = false;
-    const sl_ground ground = {.visible = false};
     const bool wired = scene->wire > 0.0;
     sl_stage stage = {.screen = screen,
                       .material = &material,
-                      .ground = &ground,
+
                       .scale = scale,
                       .layers = wired ? 2 : 1,
                       .layer = wired ? layer : layer + 1};

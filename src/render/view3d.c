@@ -80,6 +80,7 @@ sl_status sl_view_3d(const sl_scene *scene, const sl_view *view, const sl_pictur
     sl_status status = SL_OK;
     sl_screen *screen = NULL;
     sl_light_rig *rig = NULL;
+    sl_ground *ground = NULL;
     line_set lines = {0};
     sl_camera camera;
     const int32_t scale = picture->samples, width = picture->width * scale, height = picture->height * scale;
@@ -91,13 +92,14 @@ sl_status sl_view_3d(const sl_scene *scene, const sl_view *view, const sl_pictur
     SL_TRY(sl_studio_create(&camera, view->up_axis, picture->sky_lights, m->nv, m->xyz, dressing->nt,
                             dressing->triangle_vertex, context, &rig));
     SL_TRY(make_lines(scene, dressing, screen, &lines));
-    sl_ground ground = sl_studio_ground(view->up_axis, m->xyz, dressing->nt, dressing->triangle_vertex);
-    ground.visible = ground.visible && picture->ground && picture->sky_lights > 0;
+    if (picture->ground && picture->sky_lights > 0) {
+        SL_TRY(sl_studio_ground(rig, view->up_axis, m->xyz, dressing->nt, dressing->triangle_vertex, context, &ground));
+    }
     const sl_material material = sl_dressed_material(scene, dressing);
     sl_stage stage = {.screen = screen,
                       .material = &material,
                       .rig = rig,
-                      .ground = &ground,
+                      .ground = ground,
                       .scale = scale,
                       .layers = lines.layers,
                       .layer = lines.layer};
@@ -109,6 +111,7 @@ sl_status sl_view_3d(const sl_scene *scene, const sl_view *view, const sl_pictur
     }
 cleanup:
     free_lines(&lines);
+    sl_ground_free(ground);
     sl_light_rig_free(rig);
     sl_screen_free(screen);
     return status;
