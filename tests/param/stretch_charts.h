@@ -1,4 +1,4 @@
-/* More charts for the tests of flattening: random disks, a limb, a ramp that overlaps when unrolled. */
+/* More charts for the tests of flattening: random disks, a limb, a ramp that covers itself when unrolled. */
 #ifndef SL_TEST_STRETCH_CHARTS_H
 #define SL_TEST_STRETCH_CHARTS_H
 
@@ -77,17 +77,6 @@ static inline sl_patch *disk_random(int32_t nv, uint64_t seed)
     return patch;
 }
 
-/* parameter: length of a limb with a round tip, radius 1/4, standing on a flat brim. */
-static inline void chart_limb(double u, double v, double parameter, double xyz[3])
-{
-    const double rho = sqrt(u * u + v * v), total = parameter + 1.0;
-    const double s = rho * total - 0.1 * u * v; /* way from the tip */
-    const double r = s < parameter + 0.3 ? 0.25 * sin(fmin(1.5707, 4.0 * s)) : 0.25 + s - parameter - 0.3;
-    xyz[0] = rho > 0.0 ? r * u / rho : 0.0;
-    xyz[1] = rho > 0.0 ? r * v / rho : 0.0;
-    xyz[2] = -fmin(s, parameter + 0.3);
-}
-
 /* parameter: whole turns of a ramp around the z axis; unrolled it covers itself from one turn on. */
 static inline void chart_ramp(double u, double v, double parameter, double xyz[3])
 {
@@ -137,6 +126,41 @@ static inline void chart_jitter_uv(const sl_patch *patch, double size, double *u
             memcpy(&uv[2 * i], old, sizeof old);
         }
     }
+}
+
+/* A limb: a tip vertex, `rings` rings of m vertices around an axis, their radii and places jittered; open at its end.
+ * Flattened by convexity or by angles it shrinks towards the tip by a factor a ring. */
+static inline sl_patch *chart_tube(int32_t m, int32_t rings, double jitter, uint64_t seed)
+{
+    test_rng rng = test_rng_seed(seed);
+    const int32_t nv = 1 + m * rings;
+    double *xyz = malloc(3 * (size_t)nv * sizeof *xyz);
+    int32_t nt = 0, *tri = malloc(3 * (size_t)(m * (2 * rings - 1)) * sizeof *tri);
+    memcpy(xyz, (double[]){0.02, -0.03, 0.3}, 3 * sizeof *xyz);
+    for (int32_t i = 0; i < m * rings; i++) {
+        const double angle = (i % m + 0.5 * (i / m) + test_uniform(&rng, -jitter, jitter)) * 6.28318530717958647692 / m;
+        const double radius = 1.0 + test_uniform(&rng, -jitter, jitter);
+        double *x = &xyz[3 * (i + 1)];
+        x[0] = radius * cos(angle);
+        x[1] = radius * sin(angle);
+        x[2] = -0.7 * (i / m + test_uniform(&rng, -jitter, jitter));
+    }
+    for (int32_t i = 0; i < m * rings; i++) {
+        const int32_t next = i % m == m - 1 ? i - m + 1 : i + 1;
+        if (i < m) {
+            memcpy(&tri[3 * nt++], (int32_t[]){0, 1 + i, 1 + next}, 3 * sizeof *tri);
+        }
+        if (i + m < m * rings) {
+            memcpy(&tri[3 * nt++], (int32_t[]){1 + i, 1 + i + m, 1 + next}, 3 * sizeof *tri);
+            memcpy(&tri[3 * nt++], (int32_t[]){1 + next, 1 + i + m, 1 + next + m}, 3 * sizeof *tri);
+        }
+    }
+    chart_shuffle(nv, xyz, nt, tri, &rng);
+    sl_patch *patch = chart_make(nv, xyz, nt, tri);
+    assert_true(sl_patch_is_disk(patch));
+    free(xyz);
+    free(tri);
+    return patch;
 }
 
 /* A ring: an m-gon tube of one row, two borders. */
