@@ -309,6 +309,56 @@ static void a_bridge_to_a_hole_is_not_an_obstacle(void **state)
     }
 }
 
+/* Outline, bridge, hole, bridge; false when the bridge crosses something. */
+static bool keyhole(test_rng *rng, int32_t outer, int32_t hole, double (*xy)[2])
+{
+    const double turn = test_uniform(rng, -1.2, 1.2);
+    for (int32_t k = 0; k <= outer; k++) {
+        const double a = 2.0 * TEST_PI * (k % outer) / outer, r = test_uniform(rng, 2.5, 5.0);
+        xy[k][0] = k < outer ? r * cos(a) : xy[0][0];
+        xy[k][1] = k < outer ? r * sin(a) : xy[0][1];
+    }
+    for (int32_t k = 0; k <= hole; k++) {
+        const double a = turn - 2.0 * TEST_PI * (k % hole) / hole, r = test_uniform(rng, 0.3, 1.2);
+        double *p = xy[outer + 1 + k];
+        p[0] = k < hole ? r * cos(a) : xy[outer + 1][0];
+        p[1] = k < hole ? r * sin(a) : xy[outer + 1][1];
+    }
+    for (int32_t k = 0; k < outer + hole + 1; k++) {
+        if (properly_cross(xy[outer], xy[outer + 1], xy[k], xy[k + 1])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void random_polygons_with_a_hole_get_positive_triangles(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x6e7);
+    int bridged = 0;
+    for (int trial = 0; trial < 2000 * test_multiplier(); trial++) {
+        double xy[MOST][2], turned[MOST][2];
+        const int32_t outer = 7 + test_index(&rng, 6), hole = 3 + test_index(&rng, 6), d = outer + hole + 2;
+        if (!keyhole(&rng, outer, hole, xy)) {
+            continue;
+        }
+        const bool mirror = test_index(&rng, 2) == 1;
+        const int32_t shift = test_index(&rng, d);
+        for (int32_t k = 0; k < d; k++) {
+            const int32_t from = (mirror ? shift + d - k : shift + k) % d;
+            turned[k][0] = xy[from][mirror ? 1 : 0];
+            turned[k][1] = xy[from][mirror ? 0 : 1];
+        }
+        const placement p = random_placement(&rng);
+        soup_clear(&s);
+        place_polygon(&s, d, turned, &p);
+        triangulate_and_check(&s, 0.0);
+        bridged++;
+    }
+    assert_true(bridged > 500);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,6 +368,7 @@ int main(void)
         cmocka_unit_test(corners_on_straight_sides_make_no_flat_triangle),
         cmocka_unit_test(a_spiral_and_a_comb_are_filled),
         cmocka_unit_test(a_bridge_to_a_hole_is_not_an_obstacle),
+        cmocka_unit_test(random_polygons_with_a_hole_get_positive_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
