@@ -53,7 +53,8 @@ typedef struct sl_abf_info {
 
 typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
 
-/* SL_INFEASIBLE (a sector without corners), SL_OUT_OF_MEMORY. */
+/* SL_INFEASIBLE (a sector without corners), SL_BAD_INPUT (sectors with a corner out of range, a theta not finite, first
+ * not ascending), SL_OUT_OF_MEMORY. On failure *out is NULL. */
 SL_NODISCARD sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **out);
 
 /* Up to n Newton steps; stops early when converged or stalled. Allocates nothing. SL_CANCELLED. */

@@ -22,28 +22,26 @@ static const double smallest_angle = 1e-6; /* [rad]: 0 would have an infinite co
 static const int max_solves = 8;
 static const double refined = 4.0 * 0x1p-52; /* a correction this small, relative to uv, is the last */
 static const double worthwhile = 0.5;        /* corrections must shrink by this factor */
-static const double first_shift = 0x1p-46;   /* of the diagonal, where rounding made the matrix indefinite */
-static const double shift_growth = 64.0;
-static const int max_shifts = 3;
 
 /* Angles fit for the cotangents: at least smallest_angle, sum pi. The excess of a clamped triangle is taken from its
- * largest angle, any other deviation is shared in proportion. */
+ * largest angle where that leaves something, any other deviation is shared in proportion. */
 static void fit_angles(const double angle[3], double out[3])
 {
-    double sum = 0.0;
     bool clamped = false;
     int largest = 0;
     for (int k = 0; k < 3; k++) {
-        clamped = clamped || !(angle[k] >= smallest_angle);
-        out[k] = angle[k] >= smallest_angle ? angle[k] : smallest_angle;
-        sum += out[k];
+        const bool large_enough = angle[k] >= smallest_angle; /* false for a NaN */
+        clamped = clamped || !large_enough;
+        out[k] = large_enough ? fmin(angle[k], pi) : smallest_angle;
+        largest = out[k] > out[largest] ? k : largest;
+    }
+    const double others = out[(largest + 1) % 3] + out[(largest + 2) % 3], sum = others + out[largest];
+    if (clamped && pi - others >= smallest_angle) {
+        out[largest] = pi - others;
+        return;
     }
     for (int k = 0; k < 3; k++) {
-        largest = out[k] > out[largest] ? k : largest;
-        out[k] *= clamped ? 1.0 : pi / sum;
-    }
-    if (clamped) {
-        out[largest] = pi - out[(largest + 1) % 3] - out[(largest + 2) % 3];
+        out[k] *= pi / sum;
     }
 }
 
@@ -108,18 +106,10 @@ static double correct(const sl_layout *layout, const double *delta, double *uv, 
     return largest;
 }
 
-/* A matrix that is positive semidefinite up to rounding gets a slightly larger diagonal; the refinement, whose
- * residuals do not know of that, still converges to the true solution. */
-static sl_status factor_shifted(sl_cholesky *factor, sl_csc *A)
+/* Connected and with two pins the matrix is positive definite: a pivot that is not is lost in rounding. */
+static sl_status factor_or_singular(sl_cholesky *factor, const sl_csc *A)
 {
-    sl_status status = sl_cholesky_factor(factor, A, NULL);
-    double shift = first_shift;
-    for (int i = 0; i < max_shifts && status == SL_NOT_POSITIVE_DEFINITE; i++, shift *= shift_growth) {
-        for (int32_t j = 0; j < A->ncols; j++) {
-            A->val[A->colptr[j]] *= 1.0 + shift;
-        }
-        status = sl_cholesky_factor(factor, A, NULL);
-    }
+    const sl_status status = sl_cholesky_factor(factor, A, NULL);
     return status == SL_NOT_POSITIVE_DEFINITE || status == SL_BAD_INPUT ? SL_SINGULAR : status;
 }
 
@@ -160,7 +150,7 @@ static sl_status solve(sl_layout *layout, const sl_context *context, double *uv)
     def.xyz = xyz;
     SL_TRY(sl_cholesky_analyze(A, &def, &factor));
     SL_TRY(sl_report_progress(context, "layout", 0.5));
-    SL_TRY(factor_shifted(factor, A));
+    SL_TRY(factor_or_singular(factor, A));
     SL_TRY(refine(layout, factor, uv));
 cleanup:
     sl_cholesky_free(factor);

@@ -466,6 +466,48 @@ static void dependent_sectors_stall_or_converge_but_never_lie(void **state)
     sl_patch_free(patch);
 }
 
+/* A sector of one whole triangle repeats its g1: a row of zeros in the Schur complement, exactly so with w = 1. */
+static void a_dependent_constraint_stalls_and_is_judged_by_its_residual(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_grid(3, 3, 0.2, chart_plane, 0.3, 0xd1);
+    static const int32_t first[] = {0, 3}, corner[] = {15, 16, 17};
+    for (int contradictory = 0; contradictory < 2; contradictory++) {
+        const double theta[] = {contradictory != 0 ? 3.0 : PI};
+        const sl_sectors sectors = {1, first, corner, theta};
+        sl_abf_def def = sl_abf_default();
+        def.sectors = &sectors;
+        def.energy = SL_ABF_UNWEIGHTED;
+        def.gradient_tolerance = -1.0; /* never met, so that a step is tried */
+        sl_abf *solver = make_solver(patch, &def);
+        const sl_abf_info *info = sl_abf_info_of(solver);
+        assert_false(info->converged || info->stalled);
+        assert_int_equal(sl_abf_step(solver, 3, NULL), SL_OK);
+        assert_true(info->stalled && info->iterations == 0);
+        assert_true(info->converged == (contradictory == 0)); /* acceptable as it stands */
+        sl_abf_free(solver);
+    }
+    sl_patch_free(patch);
+}
+
+/* With the gradient left out of account, g3 alone decides: it is the last to vanish. */
+static void convergence_waits_for_every_constraint(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(4, 0.2, chart_cap, 1.4, 0xec);
+    sl_abf_def def = sl_abf_default();
+    def.gradient_tolerance = def.accept_gradient = 1e9;
+    sl_abf *solver = make_solver(patch, &def);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+    assert_true(info->g1 < 1e-12 && info->g2 < 1e-12 && info->g3 > 1e-6);
+    assert_false(info->converged);
+    assert_int_equal(sl_abf_step(solver, 20, NULL), SL_OK);
+    assert_true(info->converged && info->g3 <= def.constraint_tolerance);
+    sl_abf_free(solver);
+    sl_patch_free(patch);
+}
+
 static void a_prescribed_border_angle_is_met(void **state)
 {
     (void)state;
@@ -599,6 +641,8 @@ int main(void)
         cmocka_unit_test(impossible_border_angles_are_reported_as_not_converged),
         cmocka_unit_test(an_angle_beyond_pi_stalls_with_positive_angles),
         cmocka_unit_test(dependent_sectors_stall_or_converge_but_never_lie),
+        cmocka_unit_test(a_dependent_constraint_stalls_and_is_judged_by_its_residual),
+        cmocka_unit_test(convergence_waits_for_every_constraint),
         cmocka_unit_test(a_prescribed_border_angle_is_met),
         cmocka_unit_test(an_iteration_limit_accepts_only_small_gradients),
         cmocka_unit_test(create_refuses_unusable_sectors),

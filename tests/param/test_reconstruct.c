@@ -66,21 +66,22 @@ static void layouts_of_a_drawings_angles_are_the_drawing(void **state)
     }
 }
 
-/* Scales that differ by four orders of magnitude: what limbs do. The angles of the smallest triangles must still match.
- */
+/* Scales that differ by four to ten orders of magnitude: what limbs do. The angles of the smallest triangles are as
+ * good as positions in doubles can tell them: that takes the refinement. */
 static void angles_survive_scales_of_many_orders_of_magnitude(void **state)
 {
     (void)state;
-    for (uint64_t seed = 1; seed <= 5; seed++) {
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        const double growth = 10.0 + 6.0 * (double)(seed % 3);
         double *drawing;
-        sl_patch *patch = stretched_drawing(10.0, seed, &drawing);
+        sl_patch *patch = stretched_drawing(growth, seed, &drawing);
         const size_t nc = 3 * (size_t)patch->nt;
         double *alpha = malloc(nc * sizeof *alpha), *found = malloc(nc * sizeof *found);
         double *uv = malloc(2 * (size_t)patch->nv * sizeof *uv);
         angles_of(patch, drawing, alpha);
         assert_int_equal(sl_abf_reconstruct(patch, alpha, NULL, uv), SL_OK);
         chart_uv_angles(patch, uv, found);
-        assert_true(test_near(chart_max_diff(alpha, found, (int64_t)nc), 0.0, 1e-7));
+        assert_true(test_near(chart_max_diff(alpha, found, (int64_t)nc), 0.0, 32.0 * TEST_EPS * exp(growth)));
         free(alpha);
         free(found);
         free(uv);
@@ -156,6 +157,9 @@ static void unfit_angles_are_corrected(void **state)
     alpha[3] = 0.0;
     alpha[4] = NAN;
     alpha[31] = -0.3;
+    alpha[40] = INFINITY;
+    alpha[48] = alpha[49] = 4.0; /* nothing left for the third */
+    alpha[50] = 1e-9;
     assert_int_equal(sl_abf_reconstruct(patch, alpha, NULL, other), SL_OK);
     for (int32_t i = 0; i < 2 * patch->nv; i++) {
         assert_true(isfinite(other[i]));
