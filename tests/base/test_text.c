@@ -132,6 +132,27 @@ static void parsing_knows_the_edges_of_the_range(void **state)
     }
 }
 
+/* Digits that decide only by being there: after more of them than any exact method keeps, and in a remainder. */
+static void parsing_heeds_the_last_of_very_many_digits(void **state)
+{
+    (void)state;
+    static char text[3100];
+    for (int zeros = 600; zeros < 3000; zeros += 97) { /* half way between two doubles, and a trifle more */
+        const int n = snprintf(text, sizeof text, "9007199254740993.%0*d10000", zeros, 0);
+        assert_true(n < (int)sizeof text);
+        assert_reads_as_strtod(text);
+        double value = 0.0;
+        parse_exact(text, &value);
+        assert_true(value == 9007199254740994.0);
+    }
+    test_rng rng = test_rng_seed(104);
+    for (int trial = 0; trial < 100000 * test_multiplier(); trial++) {
+        const uint64_t w = 100000000000000000u + test_bits(&rng) % 9900000000000000000u;
+        snprintf(text, sizeof text, "%llue%d", (unsigned long long)w, test_index(&rng, 8) - 30);
+        assert_reads_as_strtod(text);
+    }
+}
+
 static void parsing_stops_where_the_number_ends(void **state)
 {
     (void)state;
@@ -299,6 +320,7 @@ int main(void)
         cmocka_unit_test(parsing_agrees_with_strtod_for_any_number_of_digits),
         cmocka_unit_test(parsing_breaks_ties_to_even_however_long_the_text),
         cmocka_unit_test(parsing_knows_the_edges_of_the_range),
+        cmocka_unit_test(parsing_heeds_the_last_of_very_many_digits),
         cmocka_unit_test(parsing_stops_where_the_number_ends),
         cmocka_unit_test(parsing_accepts_nan_and_infinity_in_any_case),
         cmocka_unit_test(formatting_is_read_back_exactly_and_no_shorter_text_would_be),

@@ -109,7 +109,7 @@ static inline char *write_and_load(const char *name, const sl_meshfile *file, co
     return data;
 }
 
-/* UVs for all corners, some shared, some missing. */
+/* UVs for all corners: some missing, many equal (at one vertex, and at different ones), some not quantised. */
 static inline double *random_uv(test_rng *rng, const sl_meshfile *file)
 {
     const int32_t corners = file->face_first[file->nf];
@@ -119,8 +119,9 @@ static inline double *random_uv(test_rng *rng, const sl_meshfile *file)
         const int kind = test_index(rng, 8);
         for (int k = 0; k < 2; k++) {
             uv[2 * c + k] = kind == 0   ? (double)NAN
-                            : kind <= 3 ? sl_uv_quantise(0.001 * file->index[c] + 0.37 * k)
-                                        : sl_uv_quantise(test_uniform(rng, -0.5, 1.5));
+                            : kind <= 3 ? sl_uv_quantise(0.001 * (file->index[c] / 4) + 0.37 * k)
+                            : kind <= 6 ? sl_uv_quantise(test_uniform(rng, -0.5, 1.5))
+                                        : test_uniform(rng, -1, 1) * pow(10.0, test_index(rng, 50) - 30);
         }
     }
     return uv;

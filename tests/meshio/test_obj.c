@@ -245,6 +245,9 @@ static void uvs_written_are_read_back_exactly_and_shared_by_vertex(void **state)
         }
         sl_meshfile *file = parse_bytes("a.obj", text.data, text.size);
         double *uv = random_uv(&rng, file);
+        for (int k = 0; k < 300 && trial % 4 == 0; k++) {
+            uv[k] = 0.375; /* one UV everywhere is still a texture vertex a vertex */
+        }
         int64_t size;
         char *written = write_and_load("b.obj", file, uv, &size);
         sl_meshfile *again = parse_bytes("b.obj", written, size);

@@ -384,6 +384,9 @@ static void rows_promised_by_the_billion_cost_nothing(void **state)
         "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\n"
         "property list uint double a\nelement face 1\nproperty list int uchar vertex_indices\nend_header\n"
         "abc\xff\xff\xff\xff",
+        "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\n"
+        "element face 1\nproperty list uint double texcoord\nproperty list uchar uchar vertex_indices\nend_header\n"
+        "abc\xff\xff\xff\xf0",
     };
     for (size_t k = 0; k < SL_COUNTOF(texts); k++) {
         const sl_diag diag = expect_failure("lies.ply", texts[k], (int64_t)strlen(texts[k]), SL_BAD_INPUT, 0, "");
