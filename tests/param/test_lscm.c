@@ -106,10 +106,8 @@ static void lscm_matches_a_dense_least_squares_solve(void **state)
 }
 
 /* The matrix is A' A of the same rows, x and y of inner edges apart. */
-static void matrix_is_the_normal_matrix_of_levys_equations(void **state)
+static void check_matrix(const sl_patch *patch)
 {
-    (void)state;
-    sl_patch *patch = chart_grid(4, 5, 0.25, chart_bumps, 1.2, 0x3a);
     sl_layout layout;
     assert_int_equal(sl_layout_init(&layout, patch), SL_OK);
     for (int32_t t = 0; t < patch->nt; t++) {
@@ -146,7 +144,38 @@ static void matrix_is_the_normal_matrix_of_levys_equations(void **state)
     sl_csc_free(N);
     sl_layout_clear(&layout);
     free(A);
-    sl_patch_free(patch);
+}
+
+static void matrix_is_the_normal_matrix_of_levys_equations(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        sl_patch *patch = chart_grid(4, 5, 0.25, chart_bumps, 1.2, seed);
+        check_matrix(patch);
+        sl_patch_free(patch);
+    }
+}
+
+/* An inner vertex of two triangles, 0 between 1 and 2: two different edges join 1 and 2. Extracted charts have such. */
+static void matrix_adds_up_edges_that_join_the_same_vertices(void **state)
+{
+    (void)state;
+    double xyz[] = {0.1, 0.2, 0.7, 1.1, 0.3, 0.2, -0.9, 0.1, 0.4, 0.2, 1.2, 0.3, 0.3, -0.8, 0.9}, uv[10];
+    int32_t tri[] = {0, 1, 2, 0, 2, 1, 2, 1, 3, 1, 2, 4};
+    int32_t twin[] = {5, 6, 3, 2, 9, 0, 1, -1, -1, 4, -1, -1}, outgoing[] = {0, 7, 10, 8, 11};
+    uint8_t border[] = {0, 1, 1, 1, 1};
+    const sl_patch patch = {.nv = 5,
+                            .nt = 4,
+                            .xyz = xyz,
+                            .tri = tri,
+                            .twin = twin,
+                            .outgoing = outgoing,
+                            .border = border,
+                            .loops = 1,
+                            .euler = 1};
+    check_matrix(&patch);
+    assert_int_equal(sl_lscm(&patch, NULL, uv), SL_OK);
+    assert_true(isfinite(uv[0]) && isfinite(uv[1]));
 }
 
 static void pins_are_far_apart_on_the_border(void **state)
@@ -321,6 +350,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lscm_matches_a_dense_least_squares_solve),
         cmocka_unit_test(matrix_is_the_normal_matrix_of_levys_equations),
+        cmocka_unit_test(matrix_adds_up_edges_that_join_the_same_vertices),
         cmocka_unit_test(pins_are_far_apart_on_the_border),
         cmocka_unit_test(flat_charts_are_mapped_isometrically),
         cmocka_unit_test(powers_of_two_scale_the_map_exactly_and_rigid_motions_leave_it),
