@@ -10,6 +10,10 @@
 /* Matrices up to this order are LAPACK's. */
 static const int32_t dense_order = 200;
 
+/* From this order on a solve is bound by reading L, which eight sides share; below, the fewer vectors of narrow blocks
+ * win. */
+static const int32_t wide_block_order = 100000;
+
 /* sigma = -sigma_share ||A||: far enough from a zero eigenvalue to factor, nearer to it than any other that matters. */
 static const double sigma_share = 1e-8;
 
@@ -75,7 +79,7 @@ static void choose_sizes(sl_lanczos *s, const sl_lanczos_def *def, bool *dense)
     s->count = def->count < s->n ? def->count : s->n;
     s->null_count = def->null_count < s->count ? def->null_count : s->count;
     s->wanted = s->count - s->null_count;
-    s->block = def->block > 0 ? def->block : s->wanted >= 16 ? 8 : s->wanted >= 6 ? 4 : 2;
+    s->block = def->block > 0 ? def->block : s->wanted < 6 ? 2 : s->n < wide_block_order ? 4 : 8;
     s->block = s->block < SL_LANCZOS_MAX_BLOCK ? s->block : SL_LANCZOS_MAX_BLOCK;
     const int64_t least = s->wanted + 3 * (int64_t)s->block;
     int64_t basis = def->max_basis > 0 ? def->max_basis : 4 * (int64_t)s->wanted + 5 * (int64_t)s->block;

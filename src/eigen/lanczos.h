@@ -35,8 +35,10 @@ typedef struct sl_lanczos_info {
 
 typedef struct sl_lanczos sl_lanczos; /* opaque: owns factor, basis and workspace; borrows A */
 
-/* A: n x n symmetric, lower triangle, positive semidefinite. Factors A - sigma I with a small negative sigma.
- * SL_BAD_INPUT, SL_OUT_OF_MEMORY, SL_NOT_POSITIVE_DEFINITE (A has a clearly negative eigenvalue). */
+/* A: n x n symmetric, lower triangle, positive semidefinite. Factors A - sigma I with a small negative sigma; a matrix
+ * of order 200 or less, or too small for the basis, is solved here and now by LAPACKE. SL_BAD_INPUT (A unsound, a field
+ * out of range, null_space not orthonormal or not mapped to 0), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL (LAPACK
+ * failed), SL_NOT_POSITIVE_DEFINITE (A has a clearly negative eigenvalue). */
 SL_NODISCARD sl_status sl_lanczos_create(const sl_csc *A, const sl_lanczos_def *def, const sl_context *context,
                                          sl_lanczos **out);
 
@@ -53,9 +55,10 @@ void sl_lanczos_result(const sl_lanczos *solver, double *lambda, double *vectors
 
 void sl_lanczos_free(sl_lanczos *solver); /* NULL is a no-op */
 
-/* create, step to the end, result, free. lambda: min(count, n) values, vectors n x min(count, n), both the caller's.
- * Not converging is no error: see info (nullable). Multiplicities up to the block width are found; a final random-start
- * check block hunts for missed copies and is reported in info.solves. Same bytes for any number of threads. */
+/* create, step to the end, result, free. lambda: min(count, n) values, vectors n x min(count, n), both the caller's;
+ * residual and info are nullable. Not converging is no error: see info. After convergence a random block in the
+ * complement of the pairs found hunts for missed copies of multiple values (any multiplicity, any block width) and is
+ * counted in info.solves; a copy found means more restarts. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_lanczos_solve(const sl_csc *A, const sl_lanczos_def *def, const sl_context *context,
                                         double *lambda, double *vectors, double *residual, sl_lanczos_info *info);
 

@@ -321,6 +321,27 @@ static void small_bases_converge_by_restarts(void **state)
     sl_csc_free(A);
 }
 
+/* lambda and vectors are those of the matrix within their span: X'AX = diag(lambda). */
+static void assert_ritz_pairs(const sl_csc *A, const sl_lanczos *solver, int32_t count)
+{
+    const int32_t n = A->ncols;
+    double *X = sl_alloc((int64_t)n * count, sizeof *X), *Y = sl_alloc((int64_t)n * count, sizeof *Y);
+    double *lambda = sl_alloc(count, sizeof *lambda);
+    assert_true(X && Y && lambda);
+    sl_lanczos_result(solver, lambda, X, NULL);
+    sl_csc_multiply_symmetric(A, X, count, Y);
+    for (int32_t k = 0; k < count * count; k++) {
+        double dot = 0.0;
+        for (int32_t i = 0; i < n; i++) {
+            dot += X[(int64_t)n * (k / count) + i] * Y[(int64_t)n * (k % count) + i];
+        }
+        assert_true(test_near(dot, k / count == k % count ? lambda[k / count] : 0.0, 1e-13));
+    }
+    sl_free(X);
+    sl_free(Y);
+    sl_free(lambda);
+}
+
 static void not_converging_is_an_outcome(void **state)
 {
     (void)state;
@@ -337,6 +358,7 @@ static void not_converging_is_an_outcome(void **state)
     assert_false(first.converged);
     assert_int_equal(first.restarts, 1);
     assert_true(first.max_residual > def.tolerance && first.converged_count < 25);
+    assert_ritz_pairs(A, solver, 25);
     assert_int_equal(sl_lanczos_step(solver, 3), SL_OK);
     const sl_lanczos_info *later = sl_lanczos_info_of(solver);
     assert_int_equal(later->restarts, 4);

@@ -121,6 +121,21 @@ static void residuals_of_a_large_grid_are_at_rounding(void **state)
     sl_csc_free(A);
 }
 
+/* Neither the path (2 n entries in L) nor the tree may be padded into one wide panel. */
+static void padding_of_chains_stays_small(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x9ad);
+    for (int kind = MATRIX_PATH; kind <= MATRIX_TREE; kind++) {
+        sl_csc *A = random_spd((matrix_kind)kind, 2000, 0.3, &rng);
+        sl_cholesky *F = factor_of(A, NULL);
+        assert_true(sl_cholesky_nnz(F) >= 2 * 2000 - 1);
+        assert_true(sl_cholesky_nnz(F) < 12 * 2000);
+        sl_cholesky_free(F);
+        sl_csc_free(A);
+    }
+}
+
 static void an_inherited_permutation_is_used(void **state)
 {
     (void)state;
@@ -333,6 +348,7 @@ int main(void)
         cmocka_unit_test(solutions_agree_with_lapack),
         cmocka_unit_test(default_definition_may_be_null),
         cmocka_unit_test(residuals_of_a_large_grid_are_at_rounding),
+        cmocka_unit_test(padding_of_chains_stays_small),
         cmocka_unit_test(an_inherited_permutation_is_used),
         cmocka_unit_test(refactoring_gives_the_bytes_of_a_fresh_factor),
         cmocka_unit_test(a_bad_pivot_names_the_column_of_the_matrix),

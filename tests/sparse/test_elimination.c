@@ -132,7 +132,7 @@ static void check_partition(const sl_csc *A, const analysis *a, const sl_partiti
     assert_int_equal(part->first[0], 0);
     assert_int_equal(part->first[part->count], a->n);
     for (int32_t s = 0; s < part->count; s++) {
-        int32_t below = 0;
+        int32_t below = 0, entries = 0;
         assert_true(part->first[s] < part->first[s + 1]);
         assert_true(part->parent[s] == -1 || part->parent[s] > s);
         for (int32_t i = part->first[s + 1]; i < a->n; i++) {
@@ -142,6 +142,13 @@ static void check_partition(const sl_csc *A, const analysis *a, const sl_partiti
             }
             below += any;
         }
+        for (int32_t j = part->first[s]; j < part->first[s + 1]; j++) {
+            for (int32_t i = j; i < a->n; i++) {
+                entries += L[j * a->n + i];
+            }
+        }
+        const int32_t width = part->first[s + 1] - part->first[s], stored = width * (width + 1) / 2 + width * below;
+        assert_true(stored - entries <= (width <= 4 ? 1.0 : width <= 16 ? 0.8 : width <= 48 ? 0.1 : 0.05) * stored);
         assert_int_equal(below, part->below[s]);
         assert_int_equal(below == 0, part->parent[s] == -1);
     }
