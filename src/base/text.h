@@ -8,7 +8,8 @@
 /* Longest text sl_format_double writes, with its terminator. */
 #define SL_DOUBLE_TEXT 32
 
-/* Shortest decimal that reads back as exactly this double ("0.1", "1e-30", "nan", "inf"). Returns its length. */
+/* Shortest decimal that reads back as exactly this double ("0.1", "1e-30", "nan", "inf"); at a power of two
+ * perhaps one digit more. Locale-free. Returns its length. */
 int32_t sl_format_double(double value, char text[SL_DOUBLE_TEXT]);
 
 /* Parses a decimal number at [begin, end); correctly rounded. Returns the first unread character, or begin when there

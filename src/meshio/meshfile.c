@@ -330,7 +330,7 @@ bool sl_meshfile_losses(const sl_meshfile *file, const char *path, char *text, s
         add_loss(text, size, extras->names, "name or material", "names and materials");
         add_loss(text, size, extras->lines, "line element", "line elements");
         add_loss(text, size, extras->points, "point element", "point elements");
-        add_loss(text, size, extras->others, "other statement", "other statements");
+        add_loss(text, size, extras->others, "other statement or row", "other statements or rows");
         add_loss(text, size, extras->properties, "extra property", "extra properties");
         add_loss(text, size, format == SL_FORMAT_PLY ? file->normals : 0, "normal", "normals");
     }

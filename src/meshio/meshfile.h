@@ -12,9 +12,9 @@ typedef enum sl_meshformat { SL_FORMAT_OBJ, SL_FORMAT_PLY, SL_FORMAT_OFF } sl_me
  * ways lose them (sl_meshfile_losses says so). */
 typedef struct sl_meshfile_extras {
     int64_t names;       /* OBJ: o, g, s, usemtl, mtllib */
-    int64_t lines;       /* OBJ: l; PLY: rows of elements that are neither vertices nor faces */
+    int64_t lines;       /* OBJ: l */
     int64_t points;      /* OBJ: p */
-    int64_t others;      /* OBJ: every other statement (curves, surfaces, display attributes, unknown words) */
+    int64_t others;      /* OBJ: every other statement; PLY: rows of elements that are neither vertices nor faces */
     int64_t properties;  /* PLY: properties without a meaning of ours */
     int64_t face_colors; /* OFF: faces with a colour */
 } sl_meshfile_extras;
@@ -44,6 +44,11 @@ SL_NODISCARD sl_status sl_meshfile_read(const char *path, sl_meshfile **out, sl_
 /* As sl_meshfile_read, from memory; name stands for the path in messages and for the extension. data is copied. */
 SL_NODISCARD sl_status sl_meshfile_parse(const char *name, const char *data, int64_t size, sl_meshfile **out,
                                          sl_diag *diag);
+
+/* Polygons that came from no file, as an OBJ file that could have been read: what a generator makes can then be written
+ * like any other mesh. polygons: borrowed. SL_BAD_INPUT (a coordinate not finite, an index out of range, a face of
+ * fewer than 3 corners), SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_meshfile_from_polygons(const sl_polygons *polygons, sl_meshfile **out, sl_diag *diag);
 
 /* Writes the file with other UVs, atomically. The extension of path decides the format ("-": standard output, in the
  * input's own format, OBJ for OFF).

@@ -273,7 +273,7 @@ static sl_status read_element(ply_reader *r, ply_element *element)
     }
     element->after = r->at.p;
     if (element->kind == PLY_ELSE) {
-        r->out->file->extras.lines += !empty ? element->count : 0;
+        r->out->file->extras.others += !empty ? element->count : 0;
     } else {
         for (int32_t k = element->first; k < element->last; k++) {
             r->out->file->extras.properties += r->header->property[k].role == PLY_OTHER;

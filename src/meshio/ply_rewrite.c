@@ -10,7 +10,7 @@ typedef struct ply_copier {
     const ply_header *header;
     const double *uv;
     sl_polygons polygons;
-    ply_type corner_count, texcoord_count; /* types of the lists written */
+    ply_type texcoord_count; /* type of the length of the lists written */
 } ply_copier;
 
 static void put_span(sl_writer *writer, const char *begin, const char *end)

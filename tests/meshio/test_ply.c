@@ -161,7 +161,7 @@ static void all_encodings_and_types_give_the_same_mesh(void **state)
                 sl_meshfile *file = parse_bytes("sample.ply", bytes.data, bytes.size);
                 assert_is_sample(file, &s);
                 assert_int_equal(file->extras.properties, 4);
-                assert_int_equal(file->extras.lines, 3);
+                assert_int_equal(file->extras.others, 3);
                 if (place == NO_UV) {
                     assert_null(file->corner_uv);
                 } else if (place == FACE_UV) {
