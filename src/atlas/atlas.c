@@ -157,6 +157,25 @@ static sl_status require_disks(const sl_atlas *atlas, sl_diag *diag)
     return SL_OK;
 }
 
+/* Where the cap on charts left one that cannot be laid flat there is nothing to deliver. */
+static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl_diag *diag)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        const sl_flatten_verdict verdict = seg->chart[c].flat.verdict;
+        if (seg->chart[c].capped && verdict != SL_CHART_VALID && verdict != SL_CHART_STRETCHED) {
+            sl_diag_reason(diag, "with at most %d charts, chart %d (%d facets) cannot be laid flat: %s",
+                           def->segment.max_charts, c, seg->chart[c].count, sl_flatten_verdict_name(verdict));
+            sl_diag_hint(diag, "raise --max-charts");
+            if (diag != NULL) {
+                diag->element = c;
+            }
+            return SL_LIMIT;
+        }
+    }
+    return SL_OK;
+}
+
 sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context, sl_atlas **out,
                     sl_diag *diag)
 {
@@ -168,6 +187,7 @@ sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const 
     SL_TRY(sl_triangulation_create(atlas->mesh, &atlas->triangulation));
     if (def->seams == SL_SEAMS_AUTOMATIC) {
         SL_TRY(sl_segment(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));
+        SL_TRY(require_flat(atlas, def, diag));
     } else {
         SL_TRY(sl_seams_cut(atlas->mesh, def->seams, &def->seam_input, diag));
         SL_TRY(sl_flatten_charts(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));

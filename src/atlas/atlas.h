@@ -50,7 +50,8 @@ typedef struct sl_atlas {
 
 /* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check. *out is given also when its
  * check did not pass (look at check.passed: what fails must not be delivered). SL_BAD_INPUT, SL_INFEASIBLE (the user's
- * seams leave a chart that is no disk, or too many charts for the page), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
+ * seams leave a chart that is no disk, or too many charts for the page), SL_LIMIT (the cap on
+ * charts left one that cannot be laid flat), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
  * diag is nullable. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context,
                                  sl_atlas **out, sl_diag *diag);

@@ -25,34 +25,24 @@ static void print_list(void)
     }
 }
 
-/* The generated mesh as a file, so that the demo's output is made as any other's. */
-static void as_meshfile(const sl_generated *mesh, sl_meshfile *file)
-{
-    *file = (sl_meshfile){.format = SL_FORMAT_OBJ,
-                          .nv = mesh->nv,
-                          .nf = mesh->nf,
-                          .xyz = mesh->xyz,
-                          .face_first = mesh->face_first,
-                          .index = mesh->index};
-}
-
-static sl_status write_demo(const char *folder, const char *name, const sl_generated *mesh, const sl_atlas *atlas,
+static sl_status write_demo(const char *folder, const char *name, const sl_polygons *polygons, const sl_atlas *atlas,
                             const sl_atlas_def *def, sl_diag *diag)
 {
     char file_name[128], path[4096], sidecar[4096];
-    sl_meshfile file;
-    as_meshfile(mesh, &file);
+    sl_meshfile *file = NULL;
+    sl_status status = SL_OK;
     snprintf(file_name, sizeof file_name, "%s.obj", name);
     if (!cli_join_path(folder, file_name, path, sizeof path)) {
         sl_diag_reason(diag, "the folder's name is too long");
         return SL_IO;
     }
-    const sl_status status = sl_meshfile_write(path, &file, atlas->input_corner_uv, diag);
-    if (status != SL_OK) {
-        return status;
-    }
+    SL_TRY(sl_meshfile_from_polygons(polygons, &file, diag));
+    SL_TRY(sl_meshfile_write(path, file, atlas->input_corner_uv, diag));
     sl_sidecar_path(path, sidecar, sizeof sidecar);
-    return sl_sidecar_write(sidecar, atlas, def, diag);
+    status = sl_sidecar_write(sidecar, atlas, def, diag);
+cleanup:
+    sl_meshfile_free(file);
+    return status;
 }
 
 static int run_demo(cli_run *run, const sl_generator *generator, const char *folder)
@@ -74,7 +64,7 @@ static int run_demo(cli_run *run, const sl_generator *generator, const char *fol
     if (!atlas->check.passed) {
         SL_TRY(SL_CHECK_FAILED);
     }
-    SL_TRY(write_demo(folder, generator->name, mesh, atlas, &def, &diag));
+    SL_TRY(write_demo(folder, generator->name, &polygons, atlas, &def, &diag));
     code = cli_preview(run, folder, atlas);
     if (code == CLI_DONE) {
         cli_note(run, "%d charts, seams %.2f diagonals, fill %.2f\n%s/%s.obj, %s/%s.atlas.json, pictures beside them",

@@ -157,7 +157,7 @@ static void seams_of_the_users_that_leave_no_disk_are_infeasible(void **state)
     free(p);
 }
 
-static void bad_polygons_and_too_small_pages_are_refused(void **state)
+static void bad_polygons_small_pages_and_too_few_charts_are_refused(void **state)
 {
     (void)state;
     potato *p = potato_make(1.1);
@@ -167,6 +167,10 @@ static void bad_polygons_and_too_small_pages_are_refused(void **state)
     def.pack = (sl_pack_def){.resolution = 16, .margin = 15.0, .rotations = 1};
     assert_int_equal(sl_unwrap(&p->polygons, &def, NULL, &atlas, &diag), SL_INFEASIBLE);
     assert_non_null(strstr(diag.hint, "--resolution"));
+    def = small_def();
+    def.segment.max_charts = 1;
+    assert_int_equal(sl_unwrap(&p->polygons, &def, NULL, &atlas, &diag), SL_LIMIT);
+    assert_non_null(strstr(diag.hint, "--max-charts"));
     p->index[7] = 4000;
     assert_int_equal(sl_unwrap(&p->polygons, &def, NULL, &atlas, &diag), SL_BAD_INPUT);
     free(p);
@@ -243,7 +247,7 @@ int main(void)
         cmocka_unit_test(the_scale_of_the_model_does_not_matter),
         cmocka_unit_test(the_check_sees_a_flip_an_overlap_and_a_crossing_border),
         cmocka_unit_test(seams_of_the_users_that_leave_no_disk_are_infeasible),
-        cmocka_unit_test(bad_polygons_and_too_small_pages_are_refused),
+        cmocka_unit_test(bad_polygons_small_pages_and_too_few_charts_are_refused),
         cmocka_unit_test(unwrapping_can_be_cancelled),
         cmocka_unit_test(the_sidecar_says_what_the_atlas_is),
         cmocka_unit_test(the_sidecar_stands_beside_its_atlas),

@@ -93,10 +93,16 @@ expect 0 "$seamlab" unwrap $mesh -o preview.obj --preview pictures/
 expect 0 "$seamlab" unwrap $mesh -o - --quiet
 contains out.txt '^vt '
 
-# --- warnings, and --strict
-expect 0 "$seamlab" unwrap $mesh -o capped.obj --max-charts 1 --max-stretch 1.01 --sew off --minimise off
+# --- warnings, --strict, and a cap that leaves nothing to deliver
+expect 0 "$seamlab" demo --model sphere -o ball --quiet
+few='--max-charts 2 --max-stretch 1.01 --sew off --minimise off'
+expect 0 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few
 contains err.txt 'warning: chart'
-expect 4 "$seamlab" unwrap $mesh -o capped.obj --max-charts 1 --max-stretch 1.01 --sew off --minimise off --strict
+contains capped.atlas.json 'above the bound'
+expect 4 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few --strict
+expect 6 "$seamlab" unwrap ball/sphere.obj -o never.obj --max-charts 1
+contains err.txt 'max-charts'
+no_file never.obj never.atlas.json
 
 # --- measure
 expect 0 "$seamlab" measure uv1.obj
@@ -120,9 +126,9 @@ for f in l.obj s.obj k.obj; do
     "$seamlab" measure $f --json | grep -o '"charts":[0-9]*' >charts.txt
     "$seamlab" measure uv1.obj --json | grep -o '"charts":[0-9]*' | cmp -s - charts.txt || complain "$f has other charts"
 done
-expect 3 "$seamlab" unwrap $mesh -o x.obj --keep-seams --labels /dev/null
+expect 3 "$seamlab" unwrap $mesh -o x.obj --labels /dev/null
 expect 3 "$seamlab" unwrap $mesh -o x.obj --labels bare.obj
-contains err.txt 'bare.obj:1'
+contains err.txt 'bare.obj:2'
 expect 3 "$seamlab" unwrap $mesh -o x.obj --seams missing.csv
 expect 3 "$seamlab" unwrap bare.obj -o x.obj --keep-seams
 printf '0 1\n' >one-edge.csv
