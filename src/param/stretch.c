@@ -29,7 +29,8 @@ struct sl_stretch {
     int32_t nb;
     int32_t *border; /* nb vertex pairs; NULL unless simple_border */
     double energy;
-    bool softened; /* the next step */
+    bool softened;    /* the next step */
+    double soft_gain; /* of the last softened step: share of the energy */
     bool done;
 };
 
@@ -137,6 +138,7 @@ static sl_status start(sl_stretch *s, const double *uv)
     }
     s->energy = sums.energy;
     s->softened = sums.energy > FAR_ENERGY;
+    s->soft_gain = 1.0;
     s->info.energy_after = sums.energy;
     s->info.l2 = sums.l2;
     return SL_OK;
@@ -263,7 +265,7 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
     return line_search(s, slope, moved, sums);
 }
 
-/* After a step that lowered the energy by the share `gain`; far from the minimum a small gain means nothing: 1. */
+/* After a step that lowered the energy by the share `gain`. */
 static bool is_hopeless(const sl_stretch *s, double gain)
 {
     const sl_stretch_def *def = &s->def;
@@ -284,9 +286,14 @@ static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
     s->info.energy_after = sums.energy;
     s->info.l2 = sums.l2;
     s->info.iterations++;
+    if (softened) {
+        s->soft_gain = gain;
+    }
+    /* Far from the minimum a small gain says something only if neither kind of step gained more. */
+    const double recent = softened ? 1.0 : sums.energy > FAR_ENERGY ? fmax(gain, s->soft_gain) : gain;
     const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
-    s->info.converged = reached || (!softened && !s->softened && gain < s->def.relative_decrease);
-    s->info.hopeless = !s->info.converged && is_hopeless(s, softened || s->softened ? 1.0 : gain);
+    s->info.converged = reached || recent < s->def.relative_decrease;
+    s->info.hopeless = !s->info.converged && is_hopeless(s, recent);
     s->done = s->info.converged || s->info.hopeless;
 }
 
@@ -297,6 +304,7 @@ static sl_status newton_step(sl_stretch *s)
     sl_status status = move(s, softened, &moved, &sums);
     if (status == SL_OK && !moved && softened) { /* the softened direction may lead uphill */
         softened = false;
+        s->soft_gain = 0.0;
         status = move(s, false, &moved, &sums);
     }
     if (status == SL_OK && moved) {
