@@ -137,7 +137,7 @@ static sl_status read_texcoord(ply_reader *r, const ply_property *property, int6
     if (!ply_read_count(&r->at, property, count)) {
         return no_value(r);
     }
-    SL_TRY(mesh_grow_double(&r->texcoord, &r->texcoord_capacity, *count));
+    SL_TRY(mesh_grow_double(&r->texcoord, &r->texcoord_capacity, *count + 1)); /* never NULL, however short */
     for (int64_t k = 0; k < *count; k++) {
         if (!ply_read_value(&r->at, property->type, &r->texcoord[k])) {
             return no_value(r);
