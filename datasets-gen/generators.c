@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const sl_generator table[] = {
+    {"hand", "a left hand, closed at the wrist; quads", gen_hand},
     {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere},
     {"torus", "a torus of quads, genus 1", gen_torus},
     {"box", "a closed box of quads: sharp edges, flat faces", gen_box},
