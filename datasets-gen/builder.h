@@ -27,6 +27,6 @@ SL_NODISCARD sl_status gen_finish(gen_builder *b, sl_generated **out);
 void gen_clear(gen_builder *b);
 
 /* The generators, one a file. */
-sl_generate_fn gen_sphere, gen_torus, gen_box, gen_hand;
+sl_generate_fn gen_sphere, gen_torus, gen_box, gen_hand, gen_body, gen_spiky;
 
 #endif

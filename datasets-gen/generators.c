@@ -7,6 +7,8 @@
 
 static const sl_generator table[] = {
     {"hand", "a left hand, closed at the wrist; quads", gen_hand},
+    {"body", "a standing person, mirror symmetric to the bit; quads", gen_body},
+    {"spiky", "a ball with fourteen spikes, their places from the seed; quads", gen_spiky},
     {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere},
     {"torus", "a torus of quads, genus 1", gen_torus},
     {"box", "a closed box of quads: sharp edges, flat faces", gen_box},
