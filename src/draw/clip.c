@@ -61,18 +61,37 @@ static void clip(const sl_screen *s, int plane, const polygon *from, polygon *to
     }
 }
 
-static void snap(const sl_screen *s, const double eye[3], int32_t *x, int32_t *y, double *key)
+static void project(const sl_screen *s, const double eye[3], sl_snapped *to)
 {
     double sample[2];
     sl_camera_project(&s->camera, s->width, s->height, eye, sample);
-    *x = (int32_t)rint((sample[0] - 0.5) * SL_SUBPIXELS);
-    *y = (int32_t)rint((sample[1] - 0.5) * SL_SUBPIXELS);
-    *key = sl_screen_key(s, eye[2]);
+    to->x = (int32_t)rint((sample[0] - 0.5) * SL_SUBPIXELS);
+    to->y = (int32_t)rint((sample[1] - 0.5) * SL_SUBPIXELS);
+    to->key = sl_screen_key(s, eye[2]);
+}
+
+void sl_screen_snap(const sl_screen *s, const double eye[3], sl_snapped *snapped)
+{
+    *snapped = (sl_snapped){.outside = SL_UNUSABLE};
+    if (!sl_screen_point_is_usable(eye)) {
+        return;
+    }
+    uint8_t outside = 0;
+    for (int plane = 0; plane < PLANES; plane++) {
+        outside |= inside(s, plane, eye) >= 0.0 ? 0 : (uint8_t)(1 << plane);
+    }
+    if (outside == 0) {
+        project(s, eye, snapped);
+    }
+    snapped->outside = outside;
 }
 
 /* The key as a linear function of the sample position, through the snapped corners. */
-static bool set_piece(const int32_t x[3], const int32_t y[3], const double key[3], int32_t triangle, sl_piece *piece)
+static bool set_piece(const sl_snapped *v0, const sl_snapped *v1, const sl_snapped *v2, int32_t triangle,
+                      sl_piece *piece)
 {
+    const int32_t x[3] = {v0->x, v1->x, v2->x}, y[3] = {v0->y, v1->y, v2->y};
+    const double key[3] = {v0->key, v1->key, v2->key};
     const int64_t ax = (int64_t)x[1] - x[0], ay = (int64_t)y[1] - y[0];
     const int64_t bx = (int64_t)x[2] - x[0], by = (int64_t)y[2] - y[0];
     const int64_t area = ax * by - bx * ay;
@@ -130,39 +149,42 @@ static bool touches_samples(const sl_screen *s, const sl_piece *piece)
     return x0 < x1 && y0 < y1;
 }
 
-int32_t sl_screen_cut(const sl_screen *s, int32_t t, sl_piece *pieces)
+/* The pieces of a triangle that crosses the planes of `crossed`. */
+static int32_t cut_crossing(const sl_screen *s, int32_t t, unsigned crossed, sl_piece *pieces)
 {
     polygon poly[2] = {{.count = 3}, {.count = 0}};
-    int32_t now = 0;
-    bool clipped[PLANES] = {false};
+    sl_snapped corner[MAX_CORNERS];
+    int32_t now = 0, count = 0;
     for (int k = 0; k < 3; k++) {
-        const double *p = s->eye + 3 * (int64_t)s->tri[3 * (int64_t)t + k];
-        if (!sl_screen_point_is_usable(p)) {
-            return 0;
-        }
-        memcpy(poly[0].p[k], p, sizeof poly[0].p[0]);
-        for (int plane = 0; plane < PLANES; plane++) {
-            clipped[plane] = clipped[plane] || !(inside(s, plane, p) >= 0.0);
-        }
+        memcpy(poly[0].p[k], s->eye + 3 * (int64_t)s->tri[3 * (int64_t)t + k], sizeof poly[0].p[0]);
     }
     for (int plane = 0; plane < PLANES && poly[now].count >= 3; plane++) {
-        if (clipped[plane]) {
+        if ((crossed >> plane & 1) != 0) {
             clip(s, plane, &poly[now], &poly[1 - now]);
             now = 1 - now;
         }
     }
-    int32_t x[MAX_CORNERS], y[MAX_CORNERS], count = 0;
-    double key[MAX_CORNERS];
-    const polygon *result = &poly[now];
-    for (int32_t i = 0; i < result->count; i++) {
-        snap(s, result->p[i], &x[i], &y[i], &key[i]);
+    for (int32_t i = 0; i < poly[now].count; i++) {
+        project(s, poly[now].p[i], &corner[i]);
     }
-    for (int32_t i = 1; i + 1 < result->count && count < SL_MAX_PIECES; i++) {
-        const int32_t px[3] = {x[0], x[i], x[i + 1]}, py[3] = {y[0], y[i], y[i + 1]};
-        const double pk[3] = {key[0], key[i], key[i + 1]};
-        if (set_piece(px, py, pk, t, &pieces[count]) && touches_samples(s, &pieces[count])) {
-            count++;
-        }
+    for (int32_t i = 1; i + 1 < poly[now].count && count < SL_MAX_PIECES; i++) {
+        sl_piece *piece = &pieces[count];
+        count += set_piece(&corner[0], &corner[i], &corner[i + 1], t, piece) && touches_samples(s, piece) ? 1 : 0;
     }
     return count;
+}
+
+int32_t sl_screen_cut(const sl_screen *s, int32_t t, sl_piece *pieces)
+{
+    const int32_t *tri = s->tri + 3 * (int64_t)t;
+    const sl_snapped *v[3] = {&s->snapped[tri[0]], &s->snapped[tri[1]], &s->snapped[tri[2]]};
+    const unsigned any = (unsigned)v[0]->outside | v[1]->outside | v[2]->outside;
+    const unsigned all = (unsigned)v[0]->outside & v[1]->outside & v[2]->outside;
+    if ((any & SL_UNUSABLE) != 0 || all != 0) {
+        return 0;
+    }
+    if (any != 0) {
+        return cut_crossing(s, t, any, pieces);
+    }
+    return set_piece(v[0], v[1], v[2], t, pieces) && touches_samples(s, pieces) ? 1 : 0;
 }

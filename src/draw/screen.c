@@ -34,6 +34,15 @@ static void project_vertices(void *user, int64_t begin, int64_t end, int32_t chu
     task->chunk_far[chunk] = farthest;
 }
 
+static void snap_vertices(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const projection_task *task = user;
+    for (int64_t v = begin; v < end; v++) {
+        sl_screen_snap(task->screen, task->screen->eye + 3 * v, &task->screen->snapped[v]);
+    }
+}
+
 static void set_key_range(sl_screen *s, double nearest, double farthest)
 {
     double z0 = fmax(nearest, s->camera.near_depth), z1 = farthest;
@@ -150,6 +159,7 @@ static sl_status project(projection_task *task, const sl_context *context)
         farthest = fmax(farthest, task->chunk_far[c]);
     }
     set_key_range(s, nearest, farthest);
+    sl_parallel_for(context, s->nv, VERTEX_CHUNK, snap_vertices, task);
     const sl_status status = make_pieces(task, context);
     return status == SL_OK ? sort_bands(s) : status;
 }
@@ -175,7 +185,8 @@ sl_status sl_screen_create(const sl_camera *camera, int32_t width, int32_t heigh
     *s = (sl_screen){
         .camera = *camera, .width = width, .height = height, .nv = nv, .nt = nt, .tri = tri, .band_rows = band_rows};
     s->eye = sl_alloc(nv, 3 * sizeof *s->eye);
-    if (s->eye == NULL) {
+    s->snapped = sl_alloc(nv, sizeof *s->snapped);
+    if (s->eye == NULL || s->snapped == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -194,6 +205,7 @@ void sl_screen_free(sl_screen *screen)
 {
     if (screen != NULL) {
         sl_free(screen->eye);
+        sl_free(screen->snapped);
         sl_free(screen->piece);
         sl_free(screen->band_first);
         sl_free(screen->band_piece);

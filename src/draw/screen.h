@@ -10,6 +10,7 @@
 enum {
     SL_SCREEN_MAX_SIDE = 1 << 16, /* samples */
     SL_SUBPIXELS = 256,           /* positions per sample and axis */
+    SL_UNUSABLE = 0x80,
 };
 
 /* A convex piece of a triangle, itself a triangle. Snapped positions are in 1/256 sample, relative to sample centres:
@@ -21,6 +22,13 @@ typedef struct sl_piece {
     double key[3]; /* key at (0, 0), and its change per sample in x and y */
 } sl_piece;
 
+/* A vertex on the picture. */
+typedef struct sl_snapped {
+    double key;
+    int32_t x, y;
+    uint8_t outside; /* bit k: beyond clipping plane k; SL_UNUSABLE: not finite */
+} sl_snapped;
+
 /* The key orders samples by depth and is linear on the picture: 0 at the near end of the scene, 1 at the far end.
  *     perspective    key = (1/z_near - 1/z) / (1/z_near - 1/z_far)
  *     orthographic   key = (z - z_near) / (z_far - z_near)                                                          */
@@ -30,6 +38,7 @@ typedef struct sl_screen {
     int32_t nv, nt;
     const int32_t *tri;           /* 3 nt; borrowed */
     double *eye;                  /* nv x 3, eye space; owned */
+    sl_snapped *snapped;          /* nv; owned */
     double key_offset, key_scale; /* key = key_offset + key_scale * (perspective ? 1/z : z) */
     int64_t pieces;
     sl_piece *piece; /* owned; in the order of the triangles */

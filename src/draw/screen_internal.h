@@ -11,7 +11,11 @@ enum { SL_MAX_PIECES = 6 };
 /* Finite and of a magnitude whose products cannot overflow. */
 bool sl_screen_point_is_usable(const double eye[3]);
 
-/* The pieces of triangle t that may touch the picture; returns how many. Reads screen->eye and the key range. */
+/* Where a vertex stands to the clipping planes, and on the picture if inside of all. Reads the key range. */
+void sl_screen_snap(const sl_screen *screen, const double eye[3], sl_snapped *snapped);
+
+/* The pieces of triangle t that may touch the picture; returns how many. Reads screen->eye, screen->snapped and the key
+ * range. */
 int32_t sl_screen_cut(const sl_screen *screen, int32_t t, sl_piece *pieces);
 
 /* Rows [*lo, *hi) of a picture of `rows` rows whose sample centres the piece's box holds; empty when *hi <= *lo. */
