@@ -115,7 +115,7 @@ static sl_status read_index(ply_reader *r, ply_type type, int32_t lowest, int32_
 static sl_status read_corners(ply_reader *r, const ply_property *property)
 {
     int64_t count;
-    int32_t vertex;
+    int32_t vertex = -1;
     sl_status status = SL_OK;
     if (!ply_read_count(&r->at, property, &count)) {
         return no_value(r);
@@ -217,7 +217,7 @@ static sl_status read_strip_vertices(ply_reader *r, const ply_property *property
         return no_value(r);
     }
     for (int64_t k = 0; k < count; k++) {
-        int32_t vertex;
+        int32_t vertex = -1;
         SL_TRY(read_index(r, property->type, -1, &vertex));
         if (vertex < 0) {
             length = 0;
