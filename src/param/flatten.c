@@ -3,21 +3,23 @@
 #include "base/memory.h"
 #include "param/flatten_internal.h"
 #include "param/lscm.h"
+#include "param/stretch_internal.h"
 #include "param/tutte.h"
 
 #include <math.h>
 #include <string.h>
 
-/* The minimiser aims a little below the bound, so that rounding and scaling leave the chart within it. */
-static const double TARGET_SHARE = 0.98;
+/* The minimiser aims at this share of the stretch allowed over 1, so that rounding and scaling leave the chart within
+ * it. */
+static const double TARGET_SHARE = 0.96;
 
 /* A start of more stretch than this is given up for Tutte's: with limbs shrunk by orders of magnitude a conformal map
  * needs up to three times the steps. */
 static const double FAR_L2 = 10.0;
 
 /* When the minimiser gives up (unless the caller says): what is still beyond FAR_L2 after hopeless_after steps, or what
- * gains too little. Over 89 charts of seven meshes it halved the steps spent on charts that stay invalid, and lost one of
- * 53 that full minimisation makes valid (at 1.495 of 1.5). */
+ * gains too little. Over 89 charts of seven meshes it halved the steps spent on charts that stay invalid, and lost one
+ * of 53 that full minimisation makes valid (at 1.495 of 1.5). */
 static const double HOPELESS_GAIN = 8.0;
 
 /* One run of the chain: the patch, what it borrows, and the best map so far. */
@@ -74,40 +76,12 @@ static int rank(sl_flatten_verdict verdict)
     return 0;
 }
 
-static sl_status list_border(chain *c)
-{
-    int32_t *first = NULL, *halfedge = NULL;
-    sl_status status = sl_patch_border(c->patch, &first, &halfedge);
-    if (status != SL_OK) {
-        return status;
-    }
-    c->nb = first[c->patch->loops];
-    c->border = sl_alloc(2 * (int64_t)c->nb, sizeof *c->border);
-    for (int32_t b = 0; b < c->nb && c->border != NULL; b++) {
-        c->border[2 * b] = c->patch->tri[halfedge[b]];
-        c->border[2 * b + 1] = c->patch->tri[sl_corner_next(halfedge[b])];
-    }
-    sl_free(first);
-    sl_free(halfedge);
-    return c->border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
-}
-
-static bool all_finite(int64_t count, const double *x)
-{
-    for (int64_t i = 0; i < count; i++) {
-        if (!isfinite(x[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* Judges c->map; `converged` is the method's own word. */
 static sl_status judge(const chain *c, bool converged, sl_flatten_result *out)
 {
     const sl_patch *p = c->patch;
     sl_status status = SL_OK;
-    if (!all_finite(2 * (int64_t)p->nv, c->map)) {
+    if (!sl_stretch_all_finite(2 * (int64_t)p->nv, c->map)) {
         out->verdict = SL_CHART_NOT_CONVERGED;
         return SL_OK;
     }
@@ -139,7 +113,7 @@ static sl_status consider(chain *c, sl_flatten_method method, bool minimised, bo
     const int old = rank(c->result->verdict), new = rank(judged.verdict);
     if (c->result->method == SL_FLATTEN_NONE || new > old ||
         (new == old &&judged.distortion.l2 < c->result->distortion.l2)) {
-        if (all_finite(2 * (int64_t)c->patch->nv, c->map)) {
+        if (sl_stretch_all_finite(2 * (int64_t)c->patch->nv, c->map)) {
             memcpy(c->best, c->map, 2 * (size_t)c->patch->nv * sizeof *c->best);
             *c->result = judged;
         }
@@ -216,7 +190,7 @@ static sl_status refine(chain *c, sl_flatten_method method)
     sl_stretch_def def = c->def->stretch;
     def.simple_border = true;
     if (isfinite(c->max_stretch)) {
-        def.target_l2 = TARGET_SHARE * c->max_stretch;
+        def.target_l2 = 1.0 + TARGET_SHARE * (c->max_stretch - 1.0);
         def.hopeless_l2 = def.hopeless_l2 > 0.0 ? def.hopeless_l2 : FAR_L2;
         def.hopeless_gain = def.hopeless_gain > 0.0 ? def.hopeless_gain : HOPELESS_GAIN;
     }
@@ -286,7 +260,7 @@ sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_
     if (c.map == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    SL_TRY(list_border(&c));
+    SL_TRY(sl_stretch_list_border(patch, &c.nb, &c.border));
     SL_TRY(try_plane(&c, one_facet, &done));
     if (!done) {
         SL_TRY(flatten_disk(&c));

@@ -16,7 +16,7 @@ static const int MAX_DOUBLINGS = 10;   /* of a full step */
 /* Far from the minimum (4 is isometric) a plain Newton step is stopped short by a few triangles that would flip; the
  * softened one is not. The two take turns by what the last step gained. */
 static const double FAR_ENERGY = 100.0;
-static const double SOFT_CAP = 1.5; /* bound on |ln s|: singular values within 0.22 and 4.5 */
+static const double SOFT_CAP = 1.0; /* bound on |ln s|: singular values within 0.37 and 2.7 */
 static const double SOFT_GAIN = 0.03, PLAIN_GAIN = 0.05;
 
 struct sl_stretch {
@@ -50,7 +50,7 @@ static bool all_positive(const sl_patch *patch, const double *uv)
     return true;
 }
 
-static bool all_finite(int64_t count, const double *x)
+bool sl_stretch_all_finite(int64_t count, const double *x)
 {
     for (int64_t i = 0; i < count; i++) {
         if (!isfinite(x[i])) {
@@ -60,11 +60,10 @@ static bool all_finite(int64_t count, const double *x)
     return true;
 }
 
-/* The border's edges as vertex pairs, for the test of self-crossing. */
-static sl_status list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
+sl_status sl_stretch_list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
 {
     int32_t *first = NULL, *halfedge = NULL;
-    sl_status status = sl_patch_border(patch, &first, &halfedge);
+    const sl_status status = sl_patch_border(patch, &first, &halfedge);
     if (status != SL_OK) {
         return status;
     }
@@ -113,7 +112,7 @@ static double best_scale(const sl_stretch *s, double energy)
 static sl_status start(sl_stretch *s, const double *uv)
 {
     const int64_t count = 2 * (int64_t)s->patch->nv;
-    if (!all_finite(count, uv) || !all_positive(s->patch, uv)) {
+    if (!sl_stretch_all_finite(count, uv) || !all_positive(s->patch, uv)) {
         return SL_BAD_INPUT;
     }
     memcpy(s->uv, uv, (size_t)count * sizeof *uv);
@@ -165,7 +164,7 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
         goto cleanup;
     }
     if (def->simple_border) {
-        SL_TRY(list_border(patch, &s->nb, &s->border));
+        SL_TRY(sl_stretch_list_border(patch, &s->nb, &s->border));
     }
     SL_TRY(sl_stretch_rest_init(patch, &s->rest));
     SL_TRY(start(s, uv));
@@ -254,7 +253,7 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
         return status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
     }
     const double slope = dot(count, s->gradient, s->direction);
-    if (!all_finite(count, s->direction) || !(slope < 0.0)) {
+    if (!sl_stretch_all_finite(count, s->direction) || !(slope < 0.0)) {
         s->info.converged = slope == 0.0;
         return SL_OK;
     }

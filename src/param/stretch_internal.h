@@ -74,4 +74,9 @@ SL_NODISCARD sl_status sl_stretch_direction(sl_stretch_system *system, const dou
  * Source: Smith and Schaefer 2015, "Bijective parameterization with free boundaries", Sec. 3.3. */
 double sl_stretch_step_bound(const sl_patch *patch, const double *uv, const double *direction);
 
+/* The border of all loops as *nb vertex pairs, as sl_certify_embedding takes it; *border is owned by the caller. */
+SL_NODISCARD sl_status sl_stretch_list_border(const sl_patch *patch, int32_t *nb, int32_t **border);
+
+bool sl_stretch_all_finite(int64_t count, const double *x);
+
 #endif

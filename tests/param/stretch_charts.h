@@ -163,6 +163,60 @@ static inline sl_patch *chart_tube(int32_t m, int32_t rings, double jitter, uint
     return patch;
 }
 
+/* Draws triangle t of an indexed mesh out into a limb of `layers` three-sided prisms along its normal, tapering. */
+static inline void extrude_triangle(int32_t t, int32_t layers, double length, int32_t *nv, double *xyz, int32_t *nt,
+                                    int32_t *tri)
+{
+    for (int32_t layer = 0; layer < layers; layer++) {
+        int32_t old[3], now[3];
+        double n[3], e[2][3];
+        memcpy(old, &tri[3 * t], sizeof old);
+        for (int k = 0; k < 3; k++) {
+            e[0][k] = xyz[3 * old[1] + k] - xyz[3 * old[0] + k];
+            e[1][k] = xyz[3 * old[2] + k] - xyz[3 * old[0] + k];
+        }
+        for (int k = 0; k < 3; k++) {
+            n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+        }
+        const double norm = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int i = 0; i < 3; i++) {
+            now[i] = (*nv)++;
+            for (int k = 0; k < 3; k++) { /* towards the middle by a tenth, and up */
+                const double middle = xyz[3 * old[0] + k] + (e[0][k] + e[1][k]) / 3.0;
+                xyz[3 * now[i] + k] = 0.9 * xyz[3 * old[i] + k] + 0.1 * middle + length * n[k] / norm;
+            }
+        }
+        for (int i = 0; i < 3; i++) {
+            const int j = (i + 1) % 3;
+            memcpy(&tri[3 * (*nt)++], (int32_t[]){old[i], old[j], now[j]}, 3 * sizeof *tri);
+            memcpy(&tri[3 * (*nt)++], (int32_t[]){old[i], now[j], now[i]}, 3 * sizeof *tri);
+        }
+        memcpy(&tri[3 * t], now, sizeof now);
+    }
+}
+
+/* A bumpy hexagon with `limbs` slender limbs of 1 .. layers prisms on triangles at random. */
+static inline sl_patch *chart_limbs(int32_t rings, int32_t limbs, int32_t layers, uint64_t seed)
+{
+    test_rng rng = test_rng_seed(seed);
+    sl_patch *base = chart_hexagon(rings, 0.2, chart_bumps, 0.6, seed);
+    int32_t nv = base->nv, nt = base->nt;
+    const int32_t more = limbs * layers;
+    double *xyz = malloc(3 * (size_t)(nv + 3 * more) * sizeof *xyz);
+    int32_t *tri = malloc(3 * (size_t)(nt + 6 * more) * sizeof *tri);
+    memcpy(xyz, base->xyz, 3 * (size_t)nv * sizeof *xyz);
+    memcpy(tri, base->tri, 3 * (size_t)nt * sizeof *tri);
+    for (int32_t i = 0; i < limbs; i++) {
+        extrude_triangle(test_index(&rng, base->nt), 1 + test_index(&rng, layers), 0.5 / rings, &nv, xyz, &nt, tri);
+    }
+    sl_patch *patch = chart_make(nv, xyz, nt, tri);
+    assert_true(sl_patch_is_disk(patch));
+    sl_patch_free(base);
+    free(xyz);
+    free(tri);
+    return patch;
+}
+
 /* A ring: an m-gon tube of one row, two borders. */
 static inline sl_patch *chart_ring(int32_t m)
 {

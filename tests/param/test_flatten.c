@@ -203,7 +203,7 @@ static void mild_stretch_is_refined_from_abf(void **state)
     o = flatten(patch, &def);
     assert_int_equal(o.r.verdict, SL_CHART_VALID);
     assert_int_equal(o.r.method, SL_FLATTEN_ABF);
-    assert_true(o.r.stretch_minimised && o.r.distortion.l2 <= 0.98 * def.max_stretch + 1e-9);
+    assert_true(o.r.stretch_minimised && o.r.distortion.l2 <= 1.0 + 0.96 * (def.max_stretch - 1.0) + 1e-9);
     free(o.uv);
     sl_patch_free(patch);
 }
@@ -211,7 +211,7 @@ static void mild_stretch_is_refined_from_abf(void **state)
 static void a_ramp_overlaps_by_abf_and_is_embedded_by_tutte(void **state)
 {
     (void)state;
-    sl_patch *patch = chart_grid(3, 50, 0.2, chart_ramp, 1.3, 0x4a3);
+    sl_patch *patch = chart_grid(3, 50, 0.2, chart_ramp, 1.6, 0x4a3);
     sl_flatten_def def = plain();
     outcome o = flatten(patch, &def);
     assert_int_equal(o.r.verdict, SL_CHART_OVERLAPS);
@@ -220,9 +220,14 @@ static void a_ramp_overlaps_by_abf_and_is_embedded_by_tutte(void **state)
     free(o.uv);
     def = sl_flatten_default();
     o = flatten(patch, &def);
-    assert_true(o.r.verdict == SL_CHART_VALID || o.r.verdict == SL_CHART_STRETCHED); /* an embedding in either case */
+    assert_int_equal(o.r.verdict, SL_CHART_VALID);
     assert_int_equal(o.r.method, SL_FLATTEN_TUTTE);
-    assert_true(o.r.stretch_minimised && o.r.certificate.border_crossings == 0);
+    assert_true(o.r.stretch_minimised);
+    free(o.uv);
+    def.max_stretch = 1.0001; /* out of reach without covering itself: still refined, still an embedding */
+    o = flatten(patch, &def);
+    assert_int_equal(o.r.verdict, SL_CHART_STRETCHED);
+    assert_true(o.r.stretch_minimised && o.r.distortion.l2 < 1.6 && o.r.certificate.embedded);
     free(o.uv);
     sl_patch_free(patch);
 }

@@ -362,6 +362,26 @@ static void long_limbs_are_unrolled_from_tutte(void **state)
     }
 }
 
+/* Several slender limbs at once: plain Newton steps are stopped by one limb or another, and leave energies of 1e5 and
+ * more in 12 of these 24 charts. */
+static void charts_with_many_limbs_come_near_their_minimum(void **state)
+{
+    (void)state;
+    int far = 0;
+    for (uint64_t seed = 0; seed < 24; seed++) {
+        sl_patch *patch = chart_limbs(3, 7, 9, seed);
+        double *uv = random_start(patch, 0.0, seed);
+        const sl_stretch_def def = sl_stretch_default();
+        sl_stretch_info info;
+        assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, &info), SL_OK);
+        assert_true(info.energy_before > 1e5);
+        far += info.energy_after > 60.0;
+        free(uv);
+        sl_patch_free(patch);
+    }
+    assert_int_equal(far, 0);
+}
+
 /* A needle's least energy is 170: still recognised as the end, though every map of it counts as far. */
 static void a_minimum_of_high_energy_is_recognised(void **state)
 {
@@ -396,6 +416,7 @@ int main(void)
         cmocka_unit_test(starts_that_flip_or_vanish_are_refused),
         cmocka_unit_test(cancelling_leaves_the_input_alone),
         cmocka_unit_test(degenerate_triangles_do_not_spoil_a_chart),
+        cmocka_unit_test(charts_with_many_limbs_come_near_their_minimum),
         cmocka_unit_test(a_minimum_of_high_energy_is_recognised),
         cmocka_unit_test(long_limbs_are_unrolled_from_tutte),
     };
