@@ -51,11 +51,19 @@ typedef struct sl_flatten_result {
 const char *sl_flatten_method_name(sl_flatten_method method);
 const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
 
-/* uv: nv x 2, scaled to the patch's 3D area, holds the best map found whatever the verdict (all zero when none). An
- * invalid chart is an outcome, not an error. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
+/* uv: nv x 2, scaled to the patch's 3D area, holds the best map found whatever the verdict (all zero when none), and
+ * the verdict is that map's: an embedding that is too stretched goes before one that overlaps, that before one with
+ * flips. An invalid chart is an outcome, not an error. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Deterministic.
+ *
+ * Tried in turn until one is valid: projection (vertices within 1e-12 of the extent from one plane); ABF++; LSCM where
+ * that did not converge or flipped; flip-free minimisation with a simple border, from that map if it is an embedding of
+ * L2 at most 10, else from Tutte's (of 1e5 and more, Tutte's is the nearer start). The minimiser stops 4 % of the way
+ * from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0, values of the chain's own).
+ * With minimise_stretch and tutte both off: the plain ABF++ verdict.
+ *
  * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch.
- * A single-facet patch is exempt from the stretch bound. Charts with 3D-degenerate triangles are judged without them
- * for stretch. */
+ * A single-facet patch is exempt from the stretch bound; without area it is valid as one point (method PLANAR). Charts
+ * with 3D-degenerate triangles are judged without them for stretch. */
 SL_NODISCARD sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context,
                                   double *uv, sl_flatten_result *result);
 
