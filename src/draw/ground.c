@@ -66,7 +66,8 @@ static void look_up(const ground_task *task, const double point[3], float *dark,
         uint16_t texel;
         double depth;
         total += amount;
-        if (sl_map_texel(rig, m, point, &texel, &depth) && (texel + 0.0) * unit < depth * unit - bias * rig->texel) {
+        if (sl_map_texel(rig, m, point, &texel, &depth) && texel != UINT16_MAX &&
+            (depth - texel) * unit > bias * rig->texel) {
             lost += amount;
             far += amount * (depth - texel) * unit;
         }

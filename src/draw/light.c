@@ -205,7 +205,8 @@ static float reaching(const sl_light_rig *rig, const sl_mapped_light *m, const d
     if (!(x >= 0.0 && y >= 0.0 && x < rig->side - 1.0 && y < rig->side - 1.0)) {
         return 1.0f;
     }
-    const double limit = map_depth(rig, m, point) - bias_texels * rig->texel / (2.0 * rig->radius) * 65534.0;
+    const double bias = bias_texels * rig->texel / (2.0 * rig->radius) * 65534.0;
+    const double limit = fmin(map_depth(rig, m, point) - bias, UINT16_MAX); /* nothing there hides nothing */
     const int32_t i = (int32_t)x, j = (int32_t)y;
     const float fx = (float)(x - i), fy = (float)(y - j);
     const uint16_t *row = m->depth + (int64_t)j * rig->side + i, *below = row + rig->side;

@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double far_away = 1e7;    /* samples; positions beyond are not drawn */
-static const double flat_slack = 1.0;  /* a line passes this many samples' size behind the surface ... */
-static const double steep_slack = 6.0; /* ... and this many half widths where the surface is steep */
+static const double far_away = 1e7;                  /* samples; positions beyond are not drawn */
+static const double flat_slack = 1.0;                /* a line passes this many samples' size behind the surface ... */
+static const double steep_slack = 2.0;               /* ... and this many half widths where the surface is steep */
+static const double snap_slack = 2.0 / SL_SUBPIXELS; /* positions of surfaces are snapped, those of lines are not */
 
 void sl_mask_clear(sl_mask *mask)
 {
@@ -118,6 +119,9 @@ void sl_mask_disc(sl_mask *mask, const double centre[2], double radius)
 
 void sl_mask_rectangle(sl_mask *mask, double x0, double y0, double x1, double y1)
 {
+    if (!(x0 < x1 && y0 < y1)) {
+        return;
+    }
     int32_t c0, c1, r0, r1;
     to_range(x0, x1, mask->x0, mask->width, &c0, &c1);
     to_range(y0, y1, mask->y0, mask->height, &r0, &r1);
@@ -141,11 +145,14 @@ static bool is_hidden(const sl_screen *screen, uint64_t zid, double x, double y,
     const sl_camera *c = &screen->camera;
     const double inverse_depth = c->perspective ? (key - screen->key_offset) / screen->key_scale : 1.0;
     const double unit = fabs(screen->key_scale) * inverse_depth / (screen->height * c->focal);
-    double plane[3], lift = 0.0;
-    if (sl_screen_plane(screen, sl_visible_triangle(zid), plane)) {
-        lift = plane[1] * (line[0] - x) + plane[2] * (line[1] - y);
-    } else {
-        lift = steep_slack * half * unit;
+    double plane[3];
+    if (!sl_screen_plane(screen, sl_visible_triangle(zid), plane)) {
+        return key > surface + steep_slack * half * unit;
+    }
+    const double lift = plane[1] * (line[0] - x) + plane[2] * (line[1] - y);
+    const double slope = (fabs(plane[1]) + fabs(plane[2])) / unit; /* samples deep per sample along */
+    if (fabs(key - (surface + lift)) < (flat_slack + snap_slack * slope) * unit) {
+        return false; /* the line lies in the plane of what is seen here */
     }
     return key > surface + clamp(lift, 0.0, steep_slack * half * unit) + flat_slack * unit;
 }

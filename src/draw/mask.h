@@ -25,8 +25,8 @@ void sl_mask_rectangle(sl_mask *mask, double x0, double y0, double x1, double y1
 
 /* A segment between two points of the scene, in eye space, clipped at the near plane; hidden where a nearer surface of
  * `visible` (same window as the mask) covers it. The surface seen at a sample is followed along its own slope to the
- * middle of the line before depths are compared, so an edge of a slanted facet does not hide itself; how far that may
- * lift is bounded by a few line widths. */
+ * middle of the line before depths are compared: a line in the plane of what is seen is shown however slanted that is,
+ * any other line may lie deeper than the surface by a line width at most. */
 void sl_mask_visible_segment(sl_mask *mask, const sl_screen *screen, const sl_visibility *visible, const double a[3],
                              const double b[3], double width);
 

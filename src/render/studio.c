@@ -14,7 +14,7 @@ static const float key_rgb[3] = {0.86f, 0.83f, 0.79f};
 static const float fill_rgb[3] = {0.10f, 0.11f, 0.13f};
 static const float rim_rgb[3] = {0.22f, 0.22f, 0.23f};
 static const float sky_rgb[3] = {0.40f, 0.42f, 0.45f}; /* irradiance on a surface facing up under the open sky */
-static const double ground_strength = 0.66;
+static const double ground_strength = 0.78;
 
 /* Axes of the scene and the camera's direction on the ground. */
 typedef struct stage_axes {
