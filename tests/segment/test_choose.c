@@ -58,9 +58,9 @@ static void simple_rules_take_the_candidate_of_the_best_length(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0x1e57);
-    for (int trial = 0; trial < 6 * test_multiplier(); trial++) {
-        sl_mesh *mesh = trial % 2 == 0 ? test_patch_mesh(&rng, 12, 9, TEST_TRIANGLES, NULL)
-                                       : test_spiky_mesh(&rng, 5, 3, 1.0, TEST_MIXED);
+    for (int trial = 0; trial < 16 * test_multiplier(); trial++) {
+        sl_mesh *mesh = trial % 2 == 0 ? test_patch_mesh(&rng, 12, 5 + trial, TEST_TRIANGLES, NULL)
+                                       : test_spiky_mesh(&rng, 5, 1 + trial / 2, 1.0, TEST_MIXED);
         sl_triangulation *t = test_triangulate(mesh);
         sl_piece *piece = whole_piece(mesh, t);
         sl_segment_def def = sl_segment_default();

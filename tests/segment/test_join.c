@@ -113,6 +113,98 @@ static void a_patch_with_holes_becomes_a_disk_and_is_sewn_again(void **state)
     }
 }
 
+/* Distances from one border loop to all others over the mesh's edges. loop: border loop of a vertex, -1 inside. */
+static void loop_distances(const sl_mesh *m, const int32_t *loop, int32_t from, int32_t nloops, double *out)
+{
+    double *d = malloc((size_t)m->nv * sizeof *d);
+    for (int32_t v = 0; v < m->nv; v++) {
+        d[v] = loop[v] == from ? 0.0 : HUGE_VAL;
+    }
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int32_t h = 0; h < m->nh; h++) {
+            const int32_t end[2] = {m->origin[h], sl_target(m, h)};
+            for (int k = 0; k < 2; k++) {
+                const double via = d[end[k]] + sl_mesh_edge_length(m, h);
+                changed = changed || via < d[end[1 - k]];
+                d[end[1 - k]] = fmin(d[end[1 - k]], via);
+            }
+        }
+    }
+    for (int32_t l = 0; l < nloops; l++) {
+        out[l] = HUGE_VAL;
+    }
+    for (int32_t v = 0; v < m->nv; v++) {
+        if (loop[v] >= 0) {
+            out[loop[v]] = fmin(out[loop[v]], d[v]);
+        }
+    }
+    free(d);
+}
+
+/* Length of the shortest tree that joins the loops pair by pair (Prim over all distances between loops). */
+static double spanning_length(const sl_mesh *m)
+{
+    enum { MAX_LOOPS = 64 };
+    int32_t *loop = malloc((size_t)m->nv * sizeof *loop), nloops = 0;
+    for (int32_t v = 0; v < m->nv; v++) {
+        loop[v] = -1;
+    }
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (m->twin[h] < 0 && loop[m->origin[h]] < 0) {
+            int32_t k = h;
+            while (loop[m->origin[k]] < 0) {
+                loop[m->origin[k]] = nloops;
+                for (k = sl_next(m, k); m->twin[k] >= 0; k = sl_next(m, m->twin[k])) {
+                }
+            }
+            nloops++;
+        }
+    }
+    assert_true(nloops <= MAX_LOOPS);
+    double near[MAX_LOOPS], row[MAX_LOOPS], total = 0.0;
+    bool in[MAX_LOOPS] = {true};
+    loop_distances(m, loop, 0, nloops, near);
+    for (int32_t k = 1; k < nloops; k++) {
+        int32_t best = -1;
+        for (int32_t l = 0; l < nloops; l++) {
+            best = !in[l] && (best < 0 || near[l] < near[best]) ? l : best;
+        }
+        total += near[best];
+        in[best] = true;
+        loop_distances(m, loop, best, nloops, row);
+        for (int32_t l = 0; l < nloops; l++) {
+            near[l] = fmin(near[l], row[l]);
+        }
+    }
+    free(loop);
+    return total;
+}
+
+/* A path may start from a path: never longer than joining loops in pairs, and sometimes shorter. */
+static void paths_branch_where_that_is_shorter(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xb4a9);
+    int32_t shorter = 0;
+    for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
+        uint8_t drop[28 * 28] = {0}; /* three holes far from the border, at the corners of a triangle */
+        drop[(11 + test_index(&rng, 2)) * 28 + 10] = 1;
+        drop[(11 + test_index(&rng, 2)) * 28 + 17] = 1;
+        drop[(17 + test_index(&rng, 2)) * 28 + 13] = 1;
+        sl_mesh *m = test_patch_mesh(&rng, 28, 28, TEST_TRIANGLES, drop);
+        const double pairwise = spanning_length(m);
+        sl_cut_list list;
+        assert_int_equal(sl_join_loops(m, &list), SL_OK);
+        const double length = list_length(m, &list);
+        assert_true(length <= pairwise * (1.0 + 1e-12));
+        shorter += length < pairwise * (1.0 - 1e-9);
+        sl_cut_list_clear(&list);
+        sl_mesh_free(m);
+    }
+    assert_true(shorter > 0);
+}
+
 static void a_disk_and_a_closed_surface_are_left_alone(void **state)
 {
     (void)state;
@@ -133,6 +225,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tube_is_cut_along_the_shortest_path_between_its_ends),
         cmocka_unit_test(a_patch_with_holes_becomes_a_disk_and_is_sewn_again),
+        cmocka_unit_test(paths_branch_where_that_is_shorter),
         cmocka_unit_test(a_disk_and_a_closed_surface_are_left_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,26 +22,28 @@ static void zeros_and_rounding_belong_to_the_positive_side(void **state)
 static void brute_force(const sl_mesh *mesh, const double *v, sl_cut_candidate *c)
 {
     int32_t *root = malloc((size_t)mesh->nf * sizeof *root);
+    double zero = 0.0; /* regular grids have true zeros, blurred by rounding: they belong to F+ */
     *c = (sl_cut_candidate){0};
     for (int32_t f = 0; f < mesh->nf; f++) {
         root[f] = f;
+        zero = fmin(zero, -1e-12 * fabs(v[f]));
     }
     for (bool changed = true; changed;) {
         changed = false;
         for (int32_t h = 0; h < mesh->nh; h++) {
             const int32_t f = mesh->face[h], g = mesh->twin[h] >= 0 ? mesh->face[mesh->twin[h]] : f;
-            if ((v[f] >= 0.0) == (v[g] >= 0.0) && root[g] < root[f]) {
+            if ((v[f] >= zero) == (v[g] >= zero) && root[g] < root[f]) {
                 root[f] = root[g];
                 changed = true;
             }
         }
     }
     for (int32_t f = 0; f < mesh->nf; f++) {
-        c->positive_parts += root[f] == f && v[f] >= 0.0;
-        c->negative_parts += root[f] == f && v[f] < 0.0;
+        c->positive_parts += root[f] == f && v[f] >= zero;
+        c->negative_parts += root[f] == f && v[f] < zero;
     }
     for (int32_t h = 0; h < mesh->nh; h++) {
-        if (h < mesh->twin[h] && (v[mesh->face[h]] >= 0.0) != (v[mesh->face[mesh->twin[h]]] >= 0.0)) {
+        if (h < mesh->twin[h] && (v[mesh->face[h]] >= zero) != (v[mesh->face[mesh->twin[h]]] >= zero)) {
             c->seam_edges++;
             c->seam_length += sl_mesh_edge_length(mesh, h);
         }
