@@ -18,7 +18,7 @@ sl_status sl_render_3d(const sl_scene *scene, const sl_view *view, const sl_pict
     SL_TRY(sl_scene_check(scene, picture, diag));
     SL_TRY(sl_dress(scene, true, &dressing));
     SL_TRY(sl_canvas_create(picture->width, picture->height, black, &canvas));
-    SL_TRY(sl_view_3d(scene, view != NULL ? view : &plain, picture, &dressing, context, canvas));
+    SL_TRY(sl_view_3d(scene, view != NULL ? view : &plain, picture, &dressing, context, canvas, diag));
     SL_TRY(sl_canvas_develop(canvas, out));
 cleanup:
     sl_canvas_free(canvas);

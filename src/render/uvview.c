@@ -1,15 +1,14 @@
 /* The atlas in UV space. */
 #include "base/memory.h"
 #include "image/color.h"
+#include "render/lines_internal.h"
 #include "render/overlay_internal.h"
 #include "render/render.h"
 #include "render/stage_internal.h"
 #include "render/view_internal.h"
 
 #include <math.h>
-#include <string.h>
 
-static const uint8_t outline_rgb[3] = {28, 28, 33};
 static const uint8_t frame_rgb[3] = {150, 150, 150};
 static const uint8_t sheet_rgb[3] = {255, 255, 255};
 static const double frame_width = 1.0; /* pixels */
@@ -78,64 +77,25 @@ static double *lift_corners(const sl_scene *scene)
     return xyz;
 }
 
-static bool is_outline(const sl_scene *scene, int32_t h)
-{
-    return sl_opposite(scene->mesh, h) < 0 || sl_is_seam(scene, h);
-}
-
-/* Outlines of the charts (inner = false) or the other edges, once each, in eye space. */
-static sl_status collect_edges(const sl_scene *scene, const sl_screen *screen, bool inner, double **segment,
-                               int64_t *count)
-{
-    const sl_mesh *m = scene->mesh;
-    *count = 0;
-    *segment = sl_alloc(m->nh, 6 * sizeof **segment);
-    if (*segment == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    for (int32_t h = 0; h < m->nh; h++) {
-        const bool outline = is_outline(scene, h);
-        if (inner ? !outline && h > sl_opposite(m, h) : outline) {
-            double *s = *segment + 6 * (*count)++;
-            memcpy(s, screen->eye + 3 * (int64_t)h, 3 * sizeof *s);
-            memcpy(s + 3, screen->eye + 3 * (int64_t)sl_next(m, h), 3 * sizeof *s);
-        }
-    }
-    return SL_OK;
-}
-
 static sl_status draw_charts(const sl_scene *scene, const sl_picture *picture, const sl_dressing *dressing,
                              const sl_camera *camera, const double *xyz, const sl_context *context, sl_canvas *canvas)
 {
     sl_status status = SL_OK;
     sl_screen *screen = NULL;
-    double *wire = NULL, *outline = NULL;
-    sl_line_layer layer[2] = {{.opacity = (float)scene->wire, .width = 0.8}, {.opacity = 1.0f, .width = 1.2}};
+    sl_line_set lines = {0};
     const int32_t scale = picture->samples;
     const sl_triangulation *tri = scene->triangulation;
     SL_TRY(sl_screen_create(camera, picture->width * scale, picture->height * scale, scene->mesh->nh, xyz, tri->nt,
                             tri->corner, SL_BAND_PIXELS * scale, context, &screen));
-    SL_TRY(collect_edges(scene, screen, true, &wire, &layer[0].count));
-    SL_TRY(collect_edges(scene, screen, false, &outline, &layer[1].count));
-    layer[0].segment = wire;
-    layer[1].segment = outline;
-    for (int i = 0; i < 2; i++) {
-        sl_rgb_to_linear(outline_rgb, layer[i].rgb);
-    }
+    SL_TRY(sl_lines_in_atlas(scene, screen, &lines));
     sl_material material = sl_dressed_material(scene, dressing);
     material.lit = false;
-    const bool wired = scene->wire > 0.0;
-    sl_stage stage = {.screen = screen,
-                      .material = &material,
-
-                      .scale = scale,
-                      .layers = wired ? 2 : 1,
-                      .layer = wired ? layer : layer + 1};
+    sl_stage stage = {
+        .screen = screen, .material = &material, .scale = scale, .layers = lines.layers, .layer = lines.layer};
     sl_rgb_to_linear(sheet_rgb, stage.background);
     SL_TRY(sl_stage_draw(&stage, context, canvas));
 cleanup:
-    sl_free(wire);
-    sl_free(outline);
+    sl_line_set_clear(&lines);
     sl_screen_free(screen);
     return status;
 }
