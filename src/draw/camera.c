@@ -5,6 +5,8 @@
 #include <string.h>
 
 static const double degree = 0.017453292519943295;
+static const double least_usable = 0.05;  /* of the picture's height */
+static const double least_distance = 0.1; /* from the eye to the nearest point, fraction of the scene's depth */
 static const double near_fraction = 1e-3; /* near plane, in distances from the eye to the nearest point */
 
 sl_view sl_view_default(void)
@@ -24,15 +26,15 @@ void sl_camera_to_eye(const sl_camera *camera, const double point[3], double eye
 void sl_camera_project(const sl_camera *camera, int32_t width, int32_t height, const double eye[3], double sample[2])
 {
     const double scale = height * camera->focal / (camera->perspective ? eye[2] : 1.0);
-    sample[0] = 0.5 * width + scale * eye[0];
-    sample[1] = 0.5 * height - scale * eye[1];
+    sample[0] = camera->centre[0] * width + scale * eye[0];
+    sample[1] = camera->centre[1] * height - scale * eye[1];
 }
 
 void sl_camera_ray(const sl_camera *camera, int32_t width, int32_t height, double sx, double sy, double origin[3],
                    double direction[3])
 {
     const double unit = 1.0 / (height * camera->focal);
-    const double x = (sx - 0.5 * width) * unit, y = (0.5 * height - sy) * unit;
+    const double x = (sx - camera->centre[0] * width) * unit, y = (camera->centre[1] * height - sy) * unit;
     const bool perspective = camera->perspective;
     origin[0] = perspective ? 0.0 : x;
     origin[1] = perspective ? 0.0 : y;
@@ -62,7 +64,7 @@ static void orient(const sl_view *view, sl_camera *camera)
 /* Largest value over the points of each of the four sides' support functions, and the least depth. */
 typedef struct extent {
     double side[4]; /* right, left, top, bottom */
-    double nearest;
+    double nearest, farthest;
     bool any;
 } extent;
 
@@ -73,6 +75,7 @@ static void extend(extent *box, const double eye[3], double tx, double ty)
         box->side[k] = fmax(box->side[k], value[k]);
     }
     box->nearest = fmin(box->nearest, eye[2]);
+    box->farthest = fmax(box->farthest, eye[2]);
     box->any = true;
 }
 
@@ -80,7 +83,7 @@ static void extend(extent *box, const double eye[3], double tx, double ty)
 static extent measure(const sl_camera *camera, int64_t count, const int32_t *index, const double *xyz, double tx,
                       double ty)
 {
-    extent box = {{-DBL_MAX, -DBL_MAX, -DBL_MAX, -DBL_MAX}, DBL_MAX, false};
+    extent box = {{-DBL_MAX, -DBL_MAX, -DBL_MAX, -DBL_MAX}, DBL_MAX, -DBL_MAX, false};
     for (int64_t i = 0; i < count; i++) {
         const double *p = xyz + 3 * (index != NULL ? index[i] : i);
         if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) {
@@ -106,10 +109,8 @@ static void place_perspective(sl_camera *camera, const extent *box, double tx, d
     const double ez_x = -(box->side[0] + box->side[1]) / (2.0 * tx);
     const double ez_y = -(box->side[2] + box->side[3]) / (2.0 * ty);
     double depth = fmin(ez_x, ez_y);
-    /* A single point has no extent: stand back one unit. */
-    if (!(box->nearest - depth > 1e-9 * (1.0 + fabs(box->nearest)))) {
-        depth = box->nearest - 1.0;
-    }
+    const double range = box->farthest - box->nearest;
+    depth = fmin(depth, box->nearest - (range > 0.0 ? least_distance * range : 1.0));
     const double ex = 0.5 * (box->side[0] - box->side[1]), ey = 0.5 * (box->side[2] - box->side[3]);
     for (int k = 0; k < 3; k++) {
         camera->eye[k] += ex * camera->right[k] + ey * camera->up[k] + depth * camera->forward[k];
@@ -117,10 +118,10 @@ static void place_perspective(sl_camera *camera, const extent *box, double tx, d
     camera->near_depth = near_fraction * (box->nearest - depth);
 }
 
-static void place_orthographic(sl_camera *camera, const extent *box, double aspect, double usable)
+static void place_orthographic(sl_camera *camera, const extent *box, double usable_width, double usable_height)
 {
     const double width = box->side[0] + box->side[1], height = box->side[2] + box->side[3];
-    const double span = fmax(height, width / aspect) / usable;
+    const double span = fmax(height / usable_height, width / usable_width); /* of the whole picture's height */
     const double ex = 0.5 * (box->side[0] - box->side[1]), ey = 0.5 * (box->side[2] - box->side[3]);
     const double depth = box->nearest - (span > 0.0 ? span : 1.0);
     for (int k = 0; k < 3; k++) {
@@ -143,16 +144,20 @@ sl_status sl_camera_frame(const sl_view *view, double aspect, int64_t count, con
         view->up_axis > 2 || !in_range(aspect, 1e-4, 1e4)) {
         return SL_BAD_INPUT;
     }
-    *camera = (sl_camera){.perspective = view->fov > 0.0};
+    const double usable_height = 1.0 - 2.0 * view->margin - view->top - view->bottom;
+    const double usable_width = aspect * (1.0 - 2.0 * view->margin); /* in picture heights */
+    if (!in_range(view->top, 0.0, 0.4) || !in_range(view->bottom, 0.0, 0.4) || !(usable_height >= least_usable)) {
+        return SL_BAD_INPUT;
+    }
+    *camera = (sl_camera){.perspective = view->fov > 0.0, .centre = {0.5, 0.5 + 0.5 * (view->top - view->bottom)}};
     orient(view, camera);
-    const double usable = 1.0 - 2.0 * view->margin;
     if (!camera->perspective) {
         const extent box = measure(camera, count, index, xyz, 0.0, 0.0);
-        place_orthographic(camera, &box, aspect, usable);
+        place_orthographic(camera, &box, usable_width, usable_height);
         return SL_OK;
     }
     const double half = tan(0.5 * view->fov * degree);
-    const double ty = half * usable, tx = half * aspect * usable;
+    const double ty = half * usable_height, tx = half * usable_width;
     camera->focal = 0.5 / half;
     const extent box = measure(camera, count, index, xyz, tx, ty);
     place_perspective(camera, &box, tx, ty);
@@ -165,6 +170,7 @@ sl_camera sl_camera_plan(double x0, double y0, double span, double aspect)
                        .right = {1.0, 0.0, 0.0},
                        .up = {0.0, 1.0, 0.0},
                        .forward = {0.0, 0.0, -1.0},
+                       .centre = {0.5, 0.5},
                        .focal = 1.0 / span,
                        .near_depth = 0.0,
                        .perspective = false};

@@ -28,7 +28,8 @@ static double inside(const sl_screen *s, int k, const double p[3])
         return p[2] - c->near_depth;
     }
     const int axis = (k - 1) / 2;
-    const double half = (0.5 * (axis == 0 ? s->width : s->height) + guard) / (s->height * c->focal);
+    const double reach = fmax(c->centre[axis], 1.0 - c->centre[axis]) * (axis == 0 ? s->width : s->height);
+    const double half = (reach + guard) / (s->height * c->focal);
     const double limit = half * (c->perspective ? p[2] : 1.0);
     return (k & 1) != 0 ? limit - p[axis] : limit + p[axis];
 }
@@ -76,14 +77,14 @@ void sl_screen_snap(const sl_screen *s, const double eye[3], sl_snapped *snapped
     if (!sl_screen_point_is_usable(eye)) {
         return;
     }
-    uint8_t outside = 0;
+    unsigned outside = 0;
     for (int plane = 0; plane < PLANES; plane++) {
-        outside |= inside(s, plane, eye) >= 0.0 ? 0 : (uint8_t)(1 << plane);
+        outside |= inside(s, plane, eye) >= 0.0 ? 0u : 1u << plane;
     }
     if (outside == 0) {
         project(s, eye, snapped);
     }
-    snapped->outside = outside;
+    snapped->outside = (uint8_t)outside;
 }
 
 /* The key as a linear function of the sample position, through the snapped corners. */

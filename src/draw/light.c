@@ -62,7 +62,8 @@ static void set_axes(sl_mapped_light *m, int32_t number)
 
 static sl_camera map_camera(const sl_light_rig *rig, const sl_mapped_light *m)
 {
-    sl_camera c = {.focal = 1.0 / (rig->side * rig->texel), .near_depth = 0.0, .perspective = false};
+    sl_camera c = {
+        .centre = {0.5, 0.5}, .focal = 1.0 / (rig->side * rig->texel), .near_depth = 0.0, .perspective = false};
     for (int k = 0; k < 3; k++) {
         c.right[k] = m->right[k];
         c.up[k] = m->up[k];

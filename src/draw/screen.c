@@ -237,12 +237,13 @@ bool sl_screen_plane(const sl_screen *s, int32_t t, double plane[3])
     if (!(fabs(divisor) > edge_on * scale)) {
         return false;
     }
-    /* value(x, y) = v0 + vx x + vy y with x = (sx - W/2) unit, y = (H/2 - sy) unit */
+    /* value(x, y) = v0 + vx x + vy y with x = (sx - W cx) unit, y = (H cy - sy) unit */
     const bool persp = s->camera.perspective;
     const double v0 = persp ? n[2] / c : c / n[2];
     const double vx = persp ? n[0] / c : -n[0] / n[2], vy = persp ? n[1] / c : -n[1] / n[2];
     plane[1] = s->key_scale * vx * unit;
     plane[2] = -s->key_scale * vy * unit;
-    plane[0] = s->key_offset + s->key_scale * v0 - 0.5 * s->width * plane[1] - 0.5 * s->height * plane[2];
+    const double cx = s->camera.centre[0] * s->width, cy = s->camera.centre[1] * s->height;
+    plane[0] = s->key_offset + s->key_scale * v0 - cx * plane[1] - cy * plane[2];
     return true;
 }

@@ -11,7 +11,7 @@
 /* Coarse meshes are modelled: they have creases. Dense ones are mostly scans, whose noise must not be taken for
  * creases, and their facets are so small that a real edge stays sharp without being split. */
 static const double coarse_crease = 40.0, dense_crease = 75.0; /* degrees */
-static const double coarse_facets = 20000.0, dense_facets = 60000.0;
+static const double coarse_facets = 4000.0, dense_facets = 60000.0;
 static const double same_uv = 1e-9; /* closer UVs are one */
 
 static bool uv_equal(const double *a, const double *b)
@@ -147,7 +147,7 @@ static sl_status set_values(const sl_scene *s, sl_dressing *d)
 
 static double crease_degrees(int32_t facets)
 {
-    const double t = fmin(fmax((facets - coarse_facets) / (dense_facets - coarse_facets), 0.0), 1.0);
+    const double t = fmin(log(fmax(facets / coarse_facets, 1.0)) / log(dense_facets / coarse_facets), 1.0);
     return coarse_crease + t * (dense_crease - coarse_crease);
 }
 

@@ -10,6 +10,7 @@
 static const uint8_t ink_rgb[3] = {45, 46, 52};
 static const double title_height = 0.026; /* of capitals, fraction of the picture's shorter side */
 static const double label_height = 0.019;
+static const double most_room = 0.15;                         /* of the picture's height, for a title or a colour bar */
 static const double least_height = 7.0;                       /* pixels */
 static const double bar_length = 0.30, bar_thickness = 0.022; /* fraction of the shorter side */
 
@@ -50,6 +51,23 @@ static double shorter_side(const sl_canvas *canvas)
     return canvas->width < canvas->height ? canvas->width : canvas->height;
 }
 
+static double letters(const sl_canvas *canvas, double fraction)
+{
+    return fmax(fraction * shorter_side(canvas), least_height);
+}
+
+double sl_title_room(const sl_canvas *canvas, const char *title)
+{
+    const bool none = title == NULL || title[0] == '\0';
+    return none ? 0.0 : fmin(1.8 * letters(canvas, title_height) / canvas->height, most_room);
+}
+
+double sl_legend_room(const sl_canvas *canvas)
+{
+    return fmin((bar_thickness * shorter_side(canvas) + 4.2 * letters(canvas, label_height)) / canvas->height,
+                most_room);
+}
+
 sl_status sl_overlay_title(sl_canvas *canvas, const char *title)
 {
     if (title == NULL || title[0] == '\0') {
@@ -58,7 +76,7 @@ sl_status sl_overlay_title(sl_canvas *canvas, const char *title)
     sl_overlay *overlay = NULL;
     const sl_status status = sl_overlay_create(canvas, &overlay);
     if (status == SL_OK) {
-        const double height = fmax(title_height * shorter_side(canvas), least_height);
+        const double height = letters(canvas, title_height);
         const double at[2] = {1.2 * height, 2.2 * height};
         sl_mask_text(&overlay->mask, at, height, title);
         sl_overlay_blend(overlay, ink_rgb, 1.0f);
@@ -95,7 +113,7 @@ sl_status sl_overlay_legend(sl_canvas *canvas, const sl_dressing *dressing, cons
     if (status != SL_OK) {
         return status;
     }
-    const double side = shorter_side(canvas), height = fmax(label_height * side, least_height);
+    const double side = shorter_side(canvas), height = letters(canvas, label_height);
     const int32_t length = (int32_t)(bar_length * side), thick = (int32_t)fmax(bar_thickness * side, 3.0);
     const int32_t x1 = canvas->width - (int32_t)(3.0 * height), x0 = x1 - length;
     const int32_t y1 = canvas->height - (int32_t)(3.2 * height), y0 = y1 - thick;

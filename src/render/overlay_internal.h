@@ -24,4 +24,8 @@ SL_NODISCARD sl_status sl_overlay_title(sl_canvas *canvas, const char *title);
 /* A horizontal colour bar in the bottom right corner, with the numbers at its ends and the name under it. */
 SL_NODISCARD sl_status sl_overlay_legend(sl_canvas *canvas, const sl_dressing *dressing, const char *name);
 
+/* Parts of the picture's height that a title takes at the top and a colour bar at the bottom. */
+double sl_title_room(const sl_canvas *canvas, const char *title);
+double sl_legend_room(const sl_canvas *canvas);
+
 #endif

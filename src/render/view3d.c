@@ -16,8 +16,12 @@ sl_status sl_view_3d(const sl_scene *scene, const sl_view *view, const sl_pictur
     sl_camera camera;
     const int32_t scale = picture->samples, width = picture->width * scale, height = picture->height * scale;
     const sl_mesh *m = scene->mesh;
-    status = sl_camera_frame(view, (double)width / height, 3 * (int64_t)dressing->nt, dressing->triangle_vertex, m->xyz,
-                             &camera);
+    const bool legend = picture->legend && dressing->value != NULL;
+    sl_view roomy = *view;
+    roomy.top += sl_title_room(canvas, picture->title);
+    roomy.bottom += legend ? sl_legend_room(canvas) : 0.0;
+    status = sl_camera_frame(&roomy, (double)width / height, 3 * (int64_t)dressing->nt, dressing->triangle_vertex,
+                             m->xyz, &camera);
     if (status != SL_OK) {
         sl_diag_reason(diag, "the camera's azimuth, elevation, field of view, margin or up axis is out of range");
         goto cleanup;
@@ -41,7 +45,7 @@ sl_status sl_view_3d(const sl_scene *scene, const sl_view *view, const sl_pictur
     sl_rgb_to_linear(picture->background, stage.background);
     SL_TRY(sl_stage_draw(&stage, context, canvas));
     SL_TRY(sl_overlay_title(canvas, picture->title));
-    if (picture->legend && dressing->value != NULL) {
+    if (legend) {
         SL_TRY(sl_overlay_legend(canvas, dressing, picture->value_name));
     }
 cleanup:

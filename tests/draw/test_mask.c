@@ -230,7 +230,8 @@ static void edges_of_a_sphere_show_on_the_near_side_only(void **state)
 static void a_segment_through_the_eye_is_cut_at_the_near_plane(void **state)
 {
     (void)state;
-    const sl_camera camera = {.right = {1, 0, 0},
+    const sl_camera camera = {.centre = {0.5, 0.5},
+                              .right = {1, 0, 0},
                               .up = {0, 1, 0},
                               .forward = {0, 0, -1},
                               .focal = 1.0,

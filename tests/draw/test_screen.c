@@ -8,7 +8,8 @@ enum { W = 80, H = 60 };
 
 static sl_camera camera_at_origin(double near_depth)
 {
-    return (sl_camera){.right = {1, 0, 0},
+    return (sl_camera){.centre = {0.5, 0.5},
+                       .right = {1, 0, 0},
                        .up = {0, 1, 0},
                        .forward = {0, 0, -1},
                        .focal = 1.0,
