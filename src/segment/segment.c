@@ -125,6 +125,7 @@ cleanup:
     return status;
 }
 
+/* The minimisation of stretch stopped at the bound while charts could still be split: now it goes to its end. */
 static sl_status polish(run *r)
 {
     const sl_recursion recursion = {.mesh = r->work, .triangulation = r->triangulation, .def = r->def};
