@@ -71,7 +71,8 @@ typedef struct sl_segmentation {
 
 /* Segments and flattens. The mesh's seams are cut in place (twin to sew pointers); on failure it is as it was.
  * Components and isolated facets become charts of their own; seams already cut stand as borders. Charts whose stretch
- * had to be minimised to meet the bound are relaxed to the end once they are final. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads. */
+ * had to be minimised to meet the bound are relaxed to the end once they are final.
+ * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_segment(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
                                   const sl_context *context, sl_segmentation **out);
 
