@@ -104,36 +104,94 @@ static void analyze_columns(sl_cholesky *F, const sl_csc *A, scratch *w)
     sl_column_counts(n, &w->half, w->parent, w->count, w->work);
 }
 
-/* Takes the supernodes over from the partition, and its column order into perm. */
-static sl_status adopt_partition(sl_cholesky *F, scratch *w)
+/* Marks the supernodes whose subtree has at most `patch` columns; returns how many. weight: supernodes. */
+static int32_t find_bottom(const sl_partition *part, int32_t patch, int32_t *weight, bool *is_bottom)
 {
-    sl_partition *part = &w->partition;
-    F->supernodes = part->count;
-    F->first = part->first;
-    F->parent = part->parent;
-    part->first = part->parent = NULL;
-    compose(F, part->order, w->place, w->work);
-    F->below_first = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->below_first);
-    F->panel = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->panel);
-    F->child = sl_alloc(F->supernodes, sizeof *F->child);
-    F->sibling = sl_alloc(F->supernodes, sizeof *F->sibling);
-    if (F->below_first == NULL || F->panel == NULL || F->child == NULL || F->sibling == NULL) {
-        return SL_OUT_OF_MEMORY;
+    int32_t bottom = 0;
+    memset(weight, 0, (size_t)part->count * sizeof *weight);
+    for (int32_t s = 0; s < part->count; s++) {
+        weight[s] += part->first[s + 1] - part->first[s];
+        is_bottom[s] = weight[s] <= patch;
+        bottom += is_bottom[s];
+        if (part->parent[s] != -1) {
+            weight[part->parent[s]] += weight[s];
+        }
     }
+    return bottom;
+}
+
+/* Numbers the partition's supernodes anew, bottom ones first, and takes them over: F's first, parent and walk; below =
+ * rows under each; order = the partition's, rearranged. number: supernodes. */
+static void renumber(sl_cholesky *F, const sl_partition *part, const bool *is_bottom, int32_t *number, int32_t *below,
+                     int32_t *order)
+{
+    int32_t next[2] = {F->bottom, 0};
+    for (int32_t s = 0; s < part->count; s++) {
+        number[s] = next[is_bottom[s]]++;
+        F->walk[s] = number[s];
+        F->first[number[s] + 1] = part->first[s + 1] - part->first[s];
+        below[number[s]] = part->below[s];
+    }
+    F->first[0] = 0;
+    for (int32_t s = 0; s < part->count; s++) {
+        F->first[s + 1] += F->first[s];
+        F->parent[number[s]] = part->parent[s] != -1 ? number[part->parent[s]] : -1;
+    }
+    for (int32_t s = 0; s < part->count; s++) {
+        const size_t width = (size_t)(part->first[s + 1] - part->first[s]);
+        memcpy(order + F->first[number[s]], part->order + part->first[s], width * sizeof *order);
+    }
+}
+
+static void link_tree(sl_cholesky *F, const int32_t *below)
+{
     F->below_first[0] = F->panel[0] = 0;
     memset(F->child, -1, (size_t)F->supernodes * sizeof *F->child);
     for (int32_t s = 0; s < F->supernodes; s++) {
-        const int64_t width = sl_supernode_width(F, s), below = part->below[s];
-        F->below_first[s + 1] = F->below_first[s] + below;
-        F->panel[s + 1] = F->panel[s] + width * (width + below);
-        F->max_below = below > F->max_below ? (int32_t)below : F->max_below;
+        const int64_t width = sl_supernode_width(F, s), size = width * (width + below[s]);
+        F->below_first[s + 1] = F->below_first[s] + below[s];
+        F->panel[s + 1] = F->panel[s] + size;
+        F->max_below = below[s] > F->max_below ? below[s] : F->max_below;
+        F->max_panel = size > F->max_panel ? size : F->max_panel;
+    }
+    for (int32_t k = 0; k < F->supernodes; k++) {
+        const int32_t s = F->walk[k];
         F->sibling[s] = -1;
         if (F->parent[s] != -1) {
             F->sibling[s] = F->child[F->parent[s]];
             F->child[F->parent[s]] = s;
         }
     }
-    return SL_OK;
+}
+
+/* Takes the supernodes over from the partition, and its column order into perm. */
+static sl_status adopt_partition(sl_cholesky *F, int32_t patch, scratch *w)
+{
+    const sl_partition *part = &w->partition;
+    const int64_t count = part->count;
+    bool *is_bottom = sl_alloc(count, sizeof *is_bottom);
+    sl_status status = SL_OK;
+    F->supernodes = part->count;
+    F->first = sl_alloc(count + 1, sizeof *F->first);
+    F->parent = sl_alloc(count, sizeof *F->parent);
+    F->walk = sl_alloc(count, sizeof *F->walk);
+    F->below_first = sl_alloc(count + 1, sizeof *F->below_first);
+    F->panel = sl_alloc(count + 1, sizeof *F->panel);
+    F->child = sl_alloc(count, sizeof *F->child);
+    F->sibling = sl_alloc(count, sizeof *F->sibling);
+    if (is_bottom == NULL || F->first == NULL || F->parent == NULL || F->walk == NULL || F->below_first == NULL ||
+        F->panel == NULL || F->child == NULL || F->sibling == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    int32_t *number = w->work, *below = w->work + F->n, *order = w->work + 2 * (int64_t)F->n;
+    F->bottom = find_bottom(part, patch, number, is_bottom);
+    renumber(F, part, is_bottom, number, below, order);
+    link_tree(F, below);
+    compose(F, order, w->place, w->count);
+cleanup:
+    sl_free(is_bottom);
+    return status;
 }
 
 /* Row i stands below every supernode on the way from its entries in A up to its own: each list comes out sorted. */
@@ -175,15 +233,36 @@ static int32_t local_row(const sl_cholesky *F, int32_t s, int32_t i)
     return sl_supernode_width(F, s) + (int32_t)(lo - F->below_first[s]);
 }
 
-static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, const int32_t *owner)
+static int32_t entry_owner(const int32_t *place, const int32_t *owner, int32_t i, int32_t j)
 {
+    return owner[place[i] < place[j] ? place[i] : place[j]];
+}
+
+/* Sorts A's entries by supernode. next: supernodes. */
+static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, const int32_t *owner, int64_t *next)
+{
+    memset(F->entry_first, 0, ((size_t)F->supernodes + 1) * sizeof *F->entry_first);
     for (int32_t j = 0; j < F->n; j++) {
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            F->entry_first[entry_owner(place, owner, A->row[p], j) + 1]++;
+        }
+    }
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        F->entry_first[s + 1] += F->entry_first[s];
+        next[s] = F->entry_first[s];
+    }
+    for (int32_t k = 0; k < F->n; k++) {
+        const int32_t s = owner[k];
+        F->entry_from[next[s]] = (int32_t)A->colptr[F->perm[k]]; /* diagonal entries first: shifts are theirs */
+        F->entry_to[next[s]++] = (k - F->first[s]) * (sl_supernode_width(F, s) + sl_supernode_below(F, s) + 1);
+    }
+    for (int32_t j = 0; j < F->n; j++) {
+        for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
             const int32_t a = place[j], b = place[A->row[p]];
-            const int32_t column = a < b ? a : b, row = a < b ? b : a;
-            const int32_t s = owner[column];
-            const int64_t height = sl_supernode_width(F, s) + sl_supernode_below(F, s);
-            F->target[p] = F->panel[s] + (column - F->first[s]) * height + local_row(F, s, row);
+            const int32_t column = a < b ? a : b, row = a < b ? b : a, s = owner[column];
+            const int32_t height = sl_supernode_width(F, s) + sl_supernode_below(F, s);
+            F->entry_from[next[s]] = (int32_t)p;
+            F->entry_to[next[s]++] = (column - F->first[s]) * height + local_row(F, s, row);
         }
     }
 }
@@ -192,7 +271,8 @@ static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, c
 static int64_t deepest_updates(const sl_cholesky *F)
 {
     int64_t top = 0, deepest = 0;
-    for (int32_t s = 0; s < F->supernodes; s++) {
+    for (int32_t k = 0; k < F->supernodes; k++) {
+        const int32_t s = F->walk[k];
         const int64_t own = (int64_t)sl_supernode_below(F, s) * sl_supernode_below(F, s);
         deepest = top + own > deepest ? top + own : deepest;
         for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
@@ -205,20 +285,21 @@ static int64_t deepest_updates(const sl_cholesky *F)
 
 static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
 {
+    if (F->pattern_nnz > INT32_MAX || F->max_panel > INT32_MAX) {
+        return SL_OUT_OF_MEMORY; /* entry_from and entry_to */
+    }
     F->below = sl_alloc(F->below_first[F->supernodes], sizeof *F->below);
-    F->target = sl_alloc(F->pattern_nnz, sizeof *F->target);
-    F->L = sl_alloc(F->panel[F->supernodes], sizeof *F->L);
-    F->relative = sl_alloc(F->max_below, sizeof *F->relative);
-    F->local = sl_alloc(F->n, sizeof *F->local);
-    F->updates = sl_alloc(deepest_updates(F), sizeof *F->updates);
-    if (F->below == NULL || F->target == NULL || F->L == NULL || F->relative == NULL || F->local == NULL ||
-        F->updates == NULL) {
+    F->entry_first = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->entry_first);
+    F->entry_from = sl_alloc(F->pattern_nnz, sizeof *F->entry_from);
+    F->entry_to = sl_alloc(F->pattern_nnz, sizeof *F->entry_to);
+    if (F->below == NULL || F->entry_first == NULL || F->entry_from == NULL || F->entry_to == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     int32_t *owner = w->count, *mark = w->work;
     sl_half_upper(A, w->place, w->next, &w->half);
     list_rows_below(F, &w->half, w->next, mark, owner);
-    map_entries(F, A, w->place, owner);
+    map_entries(F, A, w->place, owner, w->next);
+    F->max_update = deepest_updates(F);
     return SL_OK;
 }
 
@@ -231,6 +312,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     *out = NULL;
     def = def != NULL ? def : &defaults;
     SL_TRY(sl_csc_check_pattern(A, true));
+    SL_TRY(def->patch >= 0 ? SL_OK : SL_BAD_INPUT);
     F = sl_calloc(1, sizeof *F);
     if (F == NULL) {
         status = SL_OUT_OF_MEMORY;
@@ -240,6 +322,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     F->pattern_nnz = A->colptr[A->ncols];
     F->pattern_hash = sl_pattern_hash(A);
     F->pivot_rtol = def->pivot_rtol;
+    F->kind = def->kind;
     F->perm = sl_alloc(F->n, sizeof *F->perm);
     SL_TRY(F->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     SL_TRY(scratch_init(A, &w));
@@ -247,7 +330,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     SL_TRY(invert(F->n, F->perm, w.place) ? SL_OK : SL_BAD_INPUT);
     analyze_columns(F, A, &w);
     SL_TRY(sl_partition_create(F->n, w.parent, w.count, &w.partition));
-    SL_TRY(adopt_partition(F, &w));
+    SL_TRY(adopt_partition(F, def->patch, &w));
     SL_TRY(analyze_rows(F, A, &w));
     *out = F;
 cleanup:
@@ -268,6 +351,11 @@ int64_t sl_cholesky_nnz(const sl_cholesky *F)
     return sum;
 }
 
+int32_t sl_cholesky_top_first(const sl_cholesky *F)
+{
+    return F->first[F->bottom];
+}
+
 const int32_t *sl_cholesky_permutation(const sl_cholesky *F)
 {
     return F->perm;
@@ -285,10 +373,11 @@ void sl_cholesky_free(sl_cholesky *F)
     sl_free(F->below);
     sl_free(F->panel);
     sl_free(F->L);
-    sl_free(F->target);
-    sl_free(F->updates);
-    sl_free(F->relative);
-    sl_free(F->local);
+    sl_free(F->sign);
+    sl_free(F->walk);
+    sl_free(F->entry_first);
+    sl_free(F->entry_from);
+    sl_free(F->entry_to);
     sl_free(F->child);
     sl_free(F->sibling);
     sl_free(F);

@@ -9,30 +9,39 @@
 #define SL_SOLVE_WIDTH 8
 
 /* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel is column-major: one row for each of these
- * columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending. Supernodes are in
- * postorder. */
+ * columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending. Supernodes are
+ * numbered from the leaves up: first those of the bottom part, then those of the top, either in postorder; walk lists
+ * them in a postorder of the whole tree. */
 struct sl_cholesky {
     int32_t n;
     int64_t pattern_nnz;   /* of A's lower triangle */
     uint64_t pattern_hash; /* so that values are not put into another pattern */
     double pivot_rtol;
+    sl_factor_kind kind;
     int32_t *perm; /* n: row k of P A P' is row perm[k] of A */
 
     int32_t supernodes;
+    int32_t bottom;       /* supernodes of the bottom part */
     int32_t *first;       /* supernodes + 1 */
     int32_t *parent;      /* supernodes: -1 for roots */
+    int32_t *walk;        /* supernodes */
     int64_t *below_first; /* supernodes + 1 */
     int32_t *below;
     int64_t *panel; /* supernodes + 1: where a panel begins in L */
-    double *L;
-    int64_t *target;   /* pattern_nnz: where an entry of A belongs in L */
-    int32_t max_below; /* rows below the widest update matrix */
+    double *L;      /* NULL before the first factorisation */
+    int8_t *sign;   /* n: signs of D, NULL for LL' or before the first factorisation */
 
-    double *updates;   /* stack of update matrices, room for the deepest */
-    int32_t *relative; /* max_below: a child's rows in its parent's numbering */
-    int32_t *local;    /* n: a row's number in the supernode at hand */
-    int32_t *child;    /* supernodes: last child, -1 = leaf */
-    int32_t *sibling;  /* supernodes: next child of the same parent */
+    /* Entries of A by supernode: those of s are entry_first[s] .. entry_first[s + 1] - 1, entry_from[e] their place in
+     * A, entry_to[e] their place in the panel. Those in the panel's first column come first. */
+    int64_t *entry_first; /* supernodes + 1 */
+    int32_t *entry_from;
+    int32_t *entry_to;
+
+    int32_t max_below;  /* rows below the widest update matrix */
+    int64_t max_panel;  /* doubles of the largest panel */
+    int64_t max_update; /* doubles of the stack of update matrices at its highest */
+    int32_t *child;     /* supernodes: last child in the walk, -1 = leaf */
+    int32_t *sibling;   /* supernodes: next child of the same parent, backwards in the walk */
 };
 
 /* FNV-1a over the pointers and rows of A. */

@@ -1,45 +1,59 @@
 /* Multifrontal factorisation. Source: Duff, Reid 1983; Liu 1992. A supernode's panel takes A's entries and its
  * children's update matrices, is factored, and leaves its own update matrix on a stack for its parent. */
-#include "sparse/cholesky.h"
+#include "base/memory.h"
+#include "sparse/front.h"
 
-#include "sparse/cholesky_internal.h"
-
-#include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
-/* Below this many multiplications a call of BLAS costs more than plain loops. */
-static const int64_t plain_work = 2048;
+/* The walk's own memory. */
+typedef struct walker {
+    const sl_front_job *job;
+    double *updates;   /* the stack */
+    double *panel;     /* where panels are made when they are not kept */
+    int32_t *relative; /* max_below: a child's rows in its parent's numbering */
+    int64_t top;       /* height of the stack */
+} walker;
 
-/* L = A's lower triangle scattered into the panels; largest = max|a_ii|. False when a value is not finite. */
-static bool scatter_values(sl_cholesky *F, const sl_csc *A, double *largest)
+/* A's entries into the panel of s. */
+static void scatter_entries(const sl_front_job *job, int32_t s, double *panel)
 {
-    memset(F->L, 0, (size_t)F->panel[F->supernodes] * sizeof *F->L);
-    *largest = 0.0;
-    for (int32_t j = 0; j < F->n; j++) {
-        *largest = fmax(*largest, fabs(A->val[A->colptr[j]]));
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            if (!isfinite(A->val[p])) {
-                return false;
-            }
-            F->L[F->target[p]] = A->val[p];
-        }
+    const sl_cholesky *F = job->F;
+    const int64_t begin = F->entry_first[s], end = F->entry_first[s + 1];
+    const int32_t width = sl_supernode_width(F, s);
+    for (int64_t e = begin; e < end; e++) {
+        panel[F->entry_to[e]] = job->A->val[F->entry_from[e]];
     }
-    return true;
+    for (int64_t e = begin; e < begin + width; e++) {
+        panel[F->entry_to[e]] -= job->sigma;
+    }
+}
+
+/* relative[i] = number of child c's i-th row within the panel of its parent s. Both lists ascend. */
+static void match_rows(const sl_cholesky *F, int32_t c, int32_t s, int32_t *relative)
+{
+    const int32_t rows = sl_supernode_below(F, c), width = sl_supernode_width(F, s);
+    const int32_t *row = F->below + F->below_first[c], *to = F->below + F->below_first[s];
+    int32_t k = 0;
+    for (int32_t i = 0; i < rows; i++) {
+        if (row[i] < F->first[s + 1]) {
+            relative[i] = row[i] - F->first[s];
+            continue;
+        }
+        while (to[k] != row[i]) {
+            k++;
+        }
+        relative[i] = width + k;
+    }
 }
 
 /* Adds child c's update matrix U to the panel of s and, where both row and column are below it, to own. */
-static void extend_add(sl_cholesky *F, int32_t c, const double *U, int32_t s, double *own)
+static void extend_add(const walker *w, int32_t c, const double *U, int32_t s, double *panel, double *own)
 {
+    const sl_cholesky *F = w->job->F;
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
-    const int32_t rows = sl_supernode_below(F, c);
-    const int32_t *row = F->below + F->below_first[c];
-    double *panel = F->L + F->panel[s];
-    for (int32_t i = 0; i < rows; i++) {
-        F->relative[i] = F->local[row[i]];
-    }
-    const int32_t *rel = F->relative;
+    const int32_t rows = sl_supernode_below(F, c), *rel = w->relative;
+    match_rows(F, c, s, w->relative);
     for (int32_t k = 0; k < rows; k++) {
         const double *from = U + (int64_t)k * rows;
         const bool in_panel = rel[k] < width;
@@ -51,121 +65,115 @@ static void extend_add(sl_cholesky *F, int32_t c, const double *U, int32_t s, do
     }
 }
 
-/* panel (height x width, its top square symmetric by the lower triangle) = columns of L, by plain loops. */
-static void factor_plain(double *panel, int32_t width, int32_t height)
+/* Returns the bad column or -1. */
+static int32_t factor_supernode(walker *w, int32_t s)
 {
-    for (int32_t k = 0; k < width; k++) {
-        double *column = panel + (int64_t)k * height;
-        for (int32_t j = 0; j < k; j++) {
-            const double *left = panel + (int64_t)j * height;
-            const double factor = left[k];
-            for (int32_t i = k; i < height; i++) {
-                column[i] -= factor * left[i];
-            }
-        }
-        column[k] = sqrt(column[k]);
-        const double scale = 1.0 / column[k];
-        for (int32_t i = k + 1; i < height; i++) {
-            column[i] *= scale;
-        }
-    }
-}
-
-/* The same by BLAS. A bad pivot leaves what it met on the diagonal. */
-static void factor_blocked(double *panel, int32_t width, int32_t height)
-{
-    const int info = LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', width, panel, height);
-    if (info > 0) {
-        panel[(info - 1) * (int64_t)(height + 1)] = NAN;
-    } else if (height > width) {
-        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, height - width, width, 1.0, panel,
-                    height, panel + width, height);
-    }
-}
-
-/* own -= L21 L21', lower triangle. */
-static void update_own(const double *panel, int32_t width, int32_t below, double *own)
-{
-    const int32_t height = width + below;
-    if ((int64_t)width * below * below > plain_work) {
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, below, width, -1.0, panel + width, height, 1.0, own,
-                    below);
-        return;
-    }
-    for (int32_t k = 0; k < below; k++) {
-        double *column = own + (int64_t)k * below;
-        for (int32_t j = 0; j < width; j++) {
-            const double *left = panel + (int64_t)j * height + width;
-            const double factor = left[k];
-            for (int32_t i = k; i < below; i++) {
-                column[i] -= factor * left[i];
-            }
-        }
-    }
-}
-
-/* Index of the first column whose pivot is not above the least one allowed, -1 when all are. */
-static int32_t find_bad_pivot(const double *panel, int32_t width, int32_t height, double least)
-{
-    for (int32_t k = 0; k < width; k++) {
-        const double root = panel[k * (int64_t)(height + 1)];
-        if (!(root > 0.0 && root * root > least && isfinite(root))) {
-            return k;
-        }
-    }
-    return -1;
-}
-
-/* Factors supernode s; *top is the height of the stack before and after. Returns the bad column or -1. */
-static int32_t factor_supernode(sl_cholesky *F, int32_t s, double least, int64_t *top)
-{
+    const sl_front_job *job = w->job;
+    const sl_cholesky *F = job->F;
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s), height = width + below;
-    double *panel = F->L + F->panel[s], *own = F->updates + *top;
     const int64_t own_size = (int64_t)below * below;
-    for (int32_t k = 0; k < width; k++) {
-        F->local[F->first[s] + k] = k;
-    }
-    for (int32_t k = 0; k < below; k++) {
-        F->local[F->below[F->below_first[s] + k]] = width + k;
-    }
+    double *panel = job->L != NULL ? job->L + F->panel[s] : w->panel, *own = w->updates + w->top;
+    int8_t *sign = job->sign != NULL ? job->sign + F->first[s] : NULL;
+    memset(panel, 0, (size_t)(F->panel[s + 1] - F->panel[s]) * sizeof *panel);
     memset(own, 0, (size_t)own_size * sizeof *own);
-    int64_t base = *top;
+    scatter_entries(job, s, panel);
+    int64_t base = w->top;
     for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) { /* last child first: it is on top */
         base -= (int64_t)sl_supernode_below(F, c) * sl_supernode_below(F, c);
-        extend_add(F, c, F->updates + base, s, own);
+        extend_add(w, c, w->updates + base, s, panel, own);
     }
-    if ((int64_t)width * width * height > plain_work) {
-        factor_blocked(panel, width, height);
-    } else {
-        factor_plain(panel, width, height);
-    }
-    const int32_t bad = find_bad_pivot(panel, width, height, least);
+    const int32_t bad = sl_front_factor(panel, width, height, job->least, job->replacement, sign);
     if (bad != -1) {
         return F->first[s] + bad;
     }
-    update_own(panel, width, below, own);
-    memmove(F->updates + base, own, (size_t)own_size * sizeof *own);
-    *top = base + own_size;
+    sl_front_update(panel, width, below, sign, own);
+    memmove(w->updates + base, own, (size_t)own_size * sizeof *own);
+    w->top = base + own_size;
+    if (job->panel_done != NULL) {
+        job->panel_done(job->user, s, panel, sign);
+    }
     return -1;
+}
+
+sl_status sl_factor_fronts(sl_front_job *job)
+{
+    const sl_cholesky *F = job->F;
+    walker w = {.job = job};
+    sl_status status = SL_OK;
+    job->bad = -1;
+    w.updates = sl_alloc(F->max_update, sizeof *w.updates);
+    w.relative = sl_alloc(F->max_below, sizeof *w.relative);
+    w.panel = sl_alloc(job->L == NULL ? F->max_panel : 0, sizeof *w.panel);
+    if (w.updates == NULL || w.relative == NULL || w.panel == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
+    for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
+        job->bad = factor_supernode(&w, F->walk[k]);
+    }
+cleanup:
+    sl_free(w.updates);
+    sl_free(w.relative);
+    sl_free(w.panel);
+    return status;
+}
+
+sl_status sl_check_values(const sl_cholesky *F, const sl_csc *A, double sigma, double *largest,
+                          double *largest_diagonal)
+{
+    *largest = *largest_diagonal = 0.0;
+    const bool same_pattern = A->ncols == F->n && A->nrows == F->n && A->colptr[F->n] == F->pattern_nnz &&
+                              sl_pattern_hash(A) == F->pattern_hash;
+    if (!same_pattern || !isfinite(sigma)) {
+        return SL_BAD_INPUT;
+    }
+    for (int32_t j = 0; j < F->n; j++) {
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            const double a = p == A->colptr[j] ? A->val[p] - sigma : A->val[p];
+            if (!isfinite(a)) {
+                return SL_BAD_INPUT;
+            }
+            *largest = fmax(*largest, fabs(a));
+        }
+        *largest_diagonal = fmax(*largest_diagonal, fabs(A->val[A->colptr[j]] - sigma));
+    }
+    return SL_OK;
+}
+
+/* L and the signs, when this is the first factorisation. */
+static sl_status make_room(sl_cholesky *F)
+{
+    if (F->L == NULL) {
+        F->L = sl_alloc(F->panel[F->supernodes], sizeof *F->L);
+    }
+    if (F->sign == NULL && F->kind == SL_FACTOR_LDLT) {
+        F->sign = sl_alloc(F->n, sizeof *F->sign);
+    }
+    return F->L != NULL && (F->sign != NULL || F->kind != SL_FACTOR_LDLT) ? SL_OK : SL_OUT_OF_MEMORY;
+}
+
+sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma, const sl_context *context,
+                                     int32_t *bad_column)
+{
+    (void)context;
+    double largest, diagonal;
+    sl_status status = SL_OK;
+    SL_TRY(sl_check_values(F, A, sigma, &largest, &diagonal));
+    SL_TRY(make_room(F));
+    sl_front_job job = {
+        .F = F, .A = A, .sigma = sigma, .least = F->pivot_rtol * diagonal, .L = F->L, .sign = F->sign, .bad = -1};
+    SL_TRY(sl_factor_fronts(&job));
+    if (job.bad != -1) {
+        if (bad_column != NULL) {
+            *bad_column = F->perm[job.bad];
+        }
+        status = F->kind == SL_FACTOR_LDLT ? SL_SINGULAR : SL_NOT_POSITIVE_DEFINITE;
+    }
+cleanup:
+    return status;
 }
 
 sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column)
 {
-    double largest;
-    const bool same_pattern = A->ncols == F->n && A->nrows == F->n && A->colptr[F->n] == F->pattern_nnz &&
-                              sl_pattern_hash(A) == F->pattern_hash;
-    if (!same_pattern || !scatter_values(F, A, &largest)) {
-        return SL_BAD_INPUT;
-    }
-    int64_t top = 0;
-    for (int32_t s = 0; s < F->supernodes; s++) {
-        const int32_t bad = factor_supernode(F, s, F->pivot_rtol * largest, &top);
-        if (bad != -1) {
-            if (bad_column != NULL) {
-                *bad_column = F->perm[bad];
-            }
-            return SL_NOT_POSITIVE_DEFINITE;
-        }
-    }
-    return SL_OK;
+    return sl_cholesky_factor_shifted(F, A, 0.0, NULL, bad_column);
 }

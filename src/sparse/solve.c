@@ -84,13 +84,18 @@ static void forward(const sl_cholesky *F, int32_t s, double *W, int32_t b, doubl
     }
 }
 
-/* own := inv(L11') (own - L21' rows below). */
+/* own := inv(L11') (S own - L21' rows below). */
 static void backward(const sl_cholesky *F, int32_t s, double *W, int32_t b, double *gathered)
 {
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s), height = width + below;
     const int32_t *row = F->below + F->below_first[s];
     const double *panel = F->L + F->panel[s];
     double *own = W + (int64_t)F->first[s] * b;
+    for (int32_t k = 0; k < width && F->sign != NULL; k++) {
+        for (int32_t c = 0; c < b && F->sign[F->first[s] + k] < 0; c++) {
+            own[(int64_t)k * b + c] = -own[(int64_t)k * b + c];
+        }
+    }
     if ((int64_t)width * height <= plain_work) {
         if (b == SL_SOLVE_WIDTH) {
             backward_plain(panel, width, below, row, own, W, SL_SOLVE_WIDTH);
@@ -112,10 +117,66 @@ static void backward(const sl_cholesky *F, int32_t s, double *W, int32_t b, doub
                 b);
 }
 
+int64_t sl_cholesky_block_work_size(const sl_cholesky *F, int32_t w)
+{
+    return (int64_t)w * F->max_below;
+}
+
+/* The supernodes of a part. */
+static void part_range(const sl_cholesky *F, sl_part part, int32_t *begin, int32_t *end)
+{
+    *begin = part == SL_PART_TOP ? F->bottom : 0;
+    *end = part == SL_PART_BOTTOM ? F->bottom : F->supernodes;
+}
+
+void sl_cholesky_forward_part(const sl_cholesky *F, sl_part part, double *X, int32_t w, double *work,
+                              const sl_context *context)
+{
+    (void)context;
+    int32_t begin, end;
+    part_range(F, part, &begin, &end);
+    double *rows = X - (int64_t)F->first[begin] * w; /* TOP: X begins with the first top row */
+    for (int32_t s = begin; s < end; s++) {
+        forward(F, s, rows, w, work);
+    }
+}
+
+void sl_cholesky_backward_part(const sl_cholesky *F, sl_part part, double *X, int32_t w, double *work,
+                               const sl_context *context)
+{
+    (void)context;
+    int32_t begin, end;
+    part_range(F, part, &begin, &end);
+    double *rows = X - (int64_t)F->first[begin] * w;
+    for (int32_t s = end - 1; s >= begin; s--) {
+        backward(F, s, rows, w, work);
+    }
+}
+
+void sl_cholesky_permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
+{
+    const int64_t n = F->n;
+    for (int64_t k = 0; k < n; k++) {
+        for (int32_t c = 0; c < w; c++) {
+            Y[k * w + c] = X[c * n + F->perm[k]];
+        }
+    }
+}
+
+void sl_cholesky_permute_out(const sl_cholesky *F, const double *Y, int32_t w, double *X)
+{
+    const int64_t n = F->n;
+    for (int64_t k = 0; k < n; k++) {
+        for (int32_t c = 0; c < w; c++) {
+            X[c * n + F->perm[k]] = Y[k * w + c];
+        }
+    }
+}
+
 int64_t sl_cholesky_work_size(const sl_cholesky *F, int32_t nrhs)
 {
-    const int64_t b = nrhs < SL_SOLVE_WIDTH ? nrhs : SL_SOLVE_WIDTH;
-    return b * ((int64_t)F->n + F->max_below);
+    const int32_t b = nrhs < SL_SOLVE_WIDTH ? nrhs : SL_SOLVE_WIDTH;
+    return b * (int64_t)F->n + sl_cholesky_block_work_size(F, b);
 }
 
 void sl_cholesky_solve(const sl_cholesky *F, double *X, int32_t nrhs, double *work)
@@ -123,23 +184,10 @@ void sl_cholesky_solve(const sl_cholesky *F, double *X, int32_t nrhs, double *wo
     const int64_t n = F->n;
     for (int32_t done = 0; done < nrhs; done += SL_SOLVE_WIDTH) {
         const int32_t b = nrhs - done < SL_SOLVE_WIDTH ? nrhs - done : SL_SOLVE_WIDTH;
-        double *W = work, *gathered = work + n * b, *group = X + n * done;
-        for (int64_t k = 0; k < n; k++) {
-            for (int32_t c = 0; c < b; c++) {
-                W[k * b + c] = group[c * n + F->perm[k]];
-            }
-        }
-        for (int32_t s = 0; s < F->supernodes; s++) {
-            forward(F, s, W, b, gathered);
-        }
-        for (int32_t s = F->supernodes - 1; s >= 0; s--) {
-            backward(F, s, W, b, gathered);
-        }
-        for (int64_t k = 0; k < n; k++) {
-            for (int32_t c = 0; c < b; c++) {
-                group[c * n + F->perm[k]] = W[k * b + c];
-            }
-        }
+        sl_cholesky_permute_in(F, X + n * done, b, work);
+        sl_cholesky_forward_part(F, SL_PART_ALL, work, b, work + n * b, NULL);
+        sl_cholesky_backward_part(F, SL_PART_ALL, work, b, work + n * b, NULL);
+        sl_cholesky_permute_out(F, work, b, X + n * done);
     }
 }
 
