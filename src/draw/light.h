@@ -18,7 +18,7 @@ typedef struct sl_light_rig_def {
     const sl_light *light;           /* borrowed during creation */
     double up[3];                    /* unit: where the hemisphere's top is */
     float top_rgb[3], bottom_rgb[3]; /* ambient irradiance of surfaces facing up and down */
-    int32_t map_side;                /* texels of a depth map's side, [16, 4096]; default 384 */
+    int32_t map_side;                /* texels of a depth map's side, [16, 4096]; default 208 */
 } sl_light_rig_def;
 
 typedef struct sl_light_rig sl_light_rig; /* opaque */

@@ -19,7 +19,7 @@ sl_picture sl_picture_default(void)
                         .height = 960,
                         .samples = 2,
                         .background = {246, 246, 244},
-                        .sky_lights = 48,
+                        .sky_lights = 80,
                         .ground = true,
                         .legend = true};
 }

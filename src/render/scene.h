@@ -58,7 +58,7 @@ typedef struct sl_picture {
     int32_t samples;       /* per pixel and axis, [1, 4]; default 2 (4x supersampling) */
     uint8_t background[3]; /* sRGB; default 246, 246, 244 */
     int32_t sky_lights;    /* lights of the sky, [0, 256]: soft shadows, ambient occlusion and the shadow on the ground;
-                              0 = none of these, about ten times faster; default 48 */
+                              0 = none of these, several times faster; default 80 */
     bool ground;           /* the scene stands on a ground that takes its shadow; default true */
     bool back_view;        /* sl_render_pair: another view from behind, in the middle; default false */
     bool legend;           /* a colour bar where values are shown; default true */

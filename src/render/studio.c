@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { KEY_LIGHTS = 20, PLAIN_LIGHTS = 2, MAP_SIDE = 384 };
+enum { KEY_LIGHTS = 20, PLAIN_LIGHTS = 2, MAP_SIDE = 208 };
 
 static const double degree = 0.017453292519943295;
 static const double golden_angle = 2.399963229728653;
@@ -106,7 +106,7 @@ sl_status sl_studio_create(const sl_camera *camera, int32_t up_axis, int32_t sky
     light[sky_lights + keys] = make_light(fill, fill_rgb, 1.0f, false);
     light[sky_lights + keys + 1] = make_light(rim, rim_rgb, 1.0f, false);
     sl_light_rig_def def = {.lights = count, .light = light, .map_side = MAP_SIDE};
-    const float top = sky_lights > 0 ? 0.06f : 0.50f, bottom = sky_lights > 0 ? 0.15f : 0.22f;
+    const float top = sky_lights > 0 ? 0.06f : 0.42f, bottom = sky_lights > 0 ? 0.15f : 0.20f;
     for (int k = 0; k < 3; k++) {
         def.up[k] = axes.up[k];
         def.top_rgb[k] = top;
