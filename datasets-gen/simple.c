@@ -19,7 +19,7 @@ static int32_t refined(int32_t base, int32_t scale)
 sl_status gen_sphere(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed; /* nothing random */
-    const int32_t rings = refined(24, scale), sectors = 2 * rings;
+    const int32_t rings = refined(36, scale), sectors = 2 * rings;
     gen_builder b = {0};
     const int32_t south = gen_vertex(&b, 0.0, -1.0, 0.0);
     for (int32_t i = 1; i < rings; i++) {
@@ -45,7 +45,7 @@ sl_status gen_sphere(uint64_t seed, int32_t scale, sl_generated **out)
 sl_status gen_torus(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed;
-    const int32_t m = refined(48, scale), n = refined(24, scale);
+    const int32_t m = refined(72, scale), n = refined(36, scale);
     const double major = 1.0, minor = 0.38;
     gen_builder b = {0};
     for (int32_t i = 0; i < m; i++) {
@@ -95,7 +95,7 @@ static void box_side(gen_builder *b, int32_t *made, const int32_t n[3], int axis
 sl_status gen_box(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed;
-    const int32_t n[3] = {refined(13, scale), refined(8, scale), refined(10, scale)};
+    const int32_t n[3] = {refined(26, scale), refined(16, scale), refined(20, scale)};
     const int64_t slots = (int64_t)(n[0] + 1) * (n[1] + 1) * (n[2] + 1);
     gen_builder b = {0};
     int32_t *made = sl_alloc(slots, sizeof *made);

@@ -109,7 +109,7 @@ static void usual_size_is_some_thousands_and_each_scale_four_times_that(void **s
     (void)state;
     for (size_t k = 0; k < SL_COUNTOF(shapes); k++) {
         sl_generated *one = make(shapes[k].name, 3, 1), *two = make(shapes[k].name, 3, 2);
-        assert_in_range(one->nf, 600, 6500);
+        assert_in_range(one->nf, 2000, 6500);
         assert_true(test_near((double)two->nf / one->nf, 4.0, 0.1));
         sl_generated_free(one);
         sl_generated_free(two);
