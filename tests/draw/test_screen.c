@@ -89,6 +89,38 @@ static void clipping_opens_no_crack(void **state)
     }
 }
 
+/* A wall that leans through the near plane: drawn where the ray meets it behind that plane, nowhere before. */
+static void nothing_before_the_near_plane_is_drawn(void **state)
+{
+    (void)state;
+    const double near_depth = 1.7, slope = 0.9; /* eye z = 1.5 + slope x */
+    double xyz[9] = {-1.4, -40, 0, 30, -3, 0, -1.2, 50, 0};
+    for (int v = 0; v < 3; v++) {
+        xyz[3 * v + 2] = -(1.5 + slope * xyz[3 * v]);
+    }
+    const int32_t tri[3] = {0, 1, 2};
+    const sl_camera camera = camera_at_origin(near_depth);
+    sl_screen *screen = NULL;
+    assert_int_equal(sl_screen_create(&camera, W, H, 3, xyz, 1, tri, 16, NULL, &screen), SL_OK);
+    uint64_t *zid = draw_all(screen);
+    int shown = 0, cut = 0;
+    for (int i = 0; i < W * H; i++) {
+        double o[3], d[3];
+        sl_camera_ray(&camera, W, H, i % W + 0.5, i / W + 0.5, o, d);
+        const double z = 1.5 / (1.0 - slope * d[0]);
+        if (z > 1.02 * near_depth && z < 5.0) {
+            assert_true(zid[i] != SL_NOTHING);
+            shown++;
+        } else if (z < 0.98 * near_depth) {
+            assert_true(zid[i] == SL_NOTHING);
+            cut++;
+        }
+    }
+    assert_true(shown > 500 && cut > 500);
+    sl_free(zid);
+    sl_screen_free(screen);
+}
+
 static void the_plane_of_a_triangle_gives_the_key_of_its_samples(void **state)
 {
     (void)state;
@@ -196,6 +228,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plane_through_the_eye_is_clipped_at_the_near_plane),
         cmocka_unit_test(clipping_opens_no_crack),
+        cmocka_unit_test(nothing_before_the_near_plane_is_drawn),
         cmocka_unit_test(the_plane_of_a_triangle_gives_the_key_of_its_samples),
         cmocka_unit_test(points_that_are_not_finite_are_left_out),
         cmocka_unit_test(an_empty_scene_draws_nothing),

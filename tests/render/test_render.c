@@ -2,6 +2,7 @@
 
 #include "image/color.h"
 #include "render/chart_colors.h"
+#include "render/stage_internal.h"
 
 /* A scene with everything in it, over the torus. */
 typedef struct torus_scene {
@@ -231,6 +232,30 @@ static void flags_seams_layers_and_dots_show(void **state)
     clear_torus(&t);
 }
 
+static void seams_are_where_charts_or_uvs_change_or_an_edge_is_cut(void **state)
+{
+    (void)state;
+    torus_scene t;
+    set_torus(&t);
+    int32_t cut = 0;
+    while (t.chart[t.mesh->face[cut]] != t.chart[t.mesh->face[t.mesh->twin[cut]]]) {
+        cut++;
+    }
+    for (int k = 0; k < 3; k++) {
+        sl_scene scene = t.scene;
+        scene.chart = k == 0 ? t.chart : NULL;
+        scene.corner_uv = k == 1 ? t.uv : NULL;
+        sl_mesh_cut_edge(t.mesh, cut);
+        for (int32_t h = 0; h < t.mesh->nh; h++) {
+            const int32_t other = sl_opposite(t.mesh, h);
+            const bool differ = t.chart[t.mesh->face[h]] != t.chart[t.mesh->face[other]];
+            assert_int_equal(sl_is_seam(&scene, h), (k < 2 && differ) || h == cut || other == cut);
+        }
+        sl_mesh_sew_edge(t.mesh, cut);
+    }
+    clear_torus(&t);
+}
+
 static bool is_blueish(const uint8_t *p)
 {
     return p[2] > p[0] + 40;
@@ -394,6 +419,7 @@ int main(void)
         cmocka_unit_test(a_pair_is_its_two_views_side_by_side),
         cmocka_unit_test(the_atlas_shows_each_chart_where_its_uvs_are),
         cmocka_unit_test(flags_seams_layers_and_dots_show),
+        cmocka_unit_test(seams_are_where_charts_or_uvs_change_or_an_edge_is_cut),
         cmocka_unit_test(signed_values_show_blue_and_red_alike_per_facet_and_per_corner),
         cmocka_unit_test(odd_inputs_give_pictures),
         cmocka_unit_test(the_window_grows_where_uvs_leave_the_unit_square),
