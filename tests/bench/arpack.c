@@ -33,13 +33,6 @@ static void *prepare(const bench_matrix *m, const char *name)
     return a->factor != NULL ? a : NULL;
 }
 
-/* Basis: half as many columns again as 2 k + 1 would be a restart more; see README.md for what was measured. */
-static int basis_size(int pairs, int n)
-{
-    const int ncv = 5 * pairs / 2;
-    return ncv < pairs + 2 ? (pairs + 2 < n ? pairs + 2 : n) : (ncv < n ? ncv : n);
-}
-
 static bool iterate(arpack *a, bench_eigen_run *run, int ncv, double *resid, double *workd, double *workl, int lworkl)
 {
     int ido = 0, info = 0, iparam[11] = {1, 0, 1000, 1, 0, 0, 3}, ipntr[11], select[3 * BENCH_MAX_PAIRS + 3];
@@ -86,7 +79,7 @@ static bool solve(void *state, bench_eigen_run *run)
         return false;
     }
     run->nnz = bench_cholmod_nnz(a->factor);
-    const int ncv = basis_size(run->pairs, a->n), lworkl = ncv * (ncv + 8);
+    const int ncv = bench_basis_size(run, 2 * run->pairs + 2, a->n), lworkl = ncv * (ncv + 8);
     a->v = sl_alloc((int64_t)a->n * ncv, sizeof *a->v);
     double *resid = sl_alloc(a->n, sizeof *resid), *workd = sl_alloc(3 * (int64_t)a->n, sizeof *workd);
     double *workl = sl_alloc(lworkl, sizeof *workl);

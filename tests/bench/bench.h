@@ -15,6 +15,7 @@ typedef struct bench_options {
     int64_t max_facets; /* default 300000 */
     int32_t runs;       /* default 3 */
     int32_t pairs;      /* default 30 */
+    int32_t basis;      /* columns of the libraries' bases; 0 = the default, see README.md */
     bool signs;         /* also at ||L v - lambda v|| <= 2e-3 lambda */
     bool all;           /* drop no solver that fell far behind at the size before */
     int32_t timeout;    /* seconds a worker may take; default 1800 */
@@ -99,7 +100,7 @@ typedef struct bench_record {
 typedef struct bench_task {
     char solver[40];
     int descriptor;
-    int32_t pairs;
+    int32_t pairs, basis;
     double tolerance; /* the solver's own */
     bool signs;
     int32_t timeout;

@@ -8,6 +8,9 @@
 #include <string.h>
 #include <suitesparse/cholmod.h>
 
+/* Right-hand sides at a time: of 4, 8, 16, 32 and 64 the fastest, and in less memory than 64. */
+enum { BATCH = 32 };
+
 struct bench_cholmod {
     cholmod_common common;
     cholmod_sparse A;
@@ -103,11 +106,15 @@ static bool solve_into_x(bench_cholmod *c, cholmod_dense *B)
 
 bool bench_cholmod_solve(bench_cholmod *c, double *X, int32_t nrhs)
 {
-    cholmod_dense B = dense(c, X, nrhs);
-    if (!solve_into_x(c, &B)) {
-        return false;
+    for (int32_t k = 0; k < nrhs; k += BATCH) {
+        const int32_t width = nrhs - k < BATCH ? nrhs - k : BATCH;
+        double *part = X + (int64_t)k * (int64_t)c->A.nrow;
+        cholmod_dense B = dense(c, part, width);
+        if (!solve_into_x(c, &B)) {
+            return false;
+        }
+        memcpy(part, c->x->x, c->A.nrow * (size_t)width * sizeof *X);
     }
-    memcpy(X, c->x->x, c->A.nrow * (size_t)nrhs * sizeof *X);
     return true;
 }
 

@@ -70,6 +70,7 @@ static void run_once(const bench *b, entry *e, int descriptor)
 {
     bench_task task = {.descriptor = descriptor,
                        .pairs = b->options.pairs,
+                       .basis = b->options.basis,
                        .tolerance = e->tolerance,
                        .signs = b->signs,
                        .timeout = b->options.timeout};

@@ -68,6 +68,7 @@ int bench_eigen_work(const bench_task *task, const bench_eigen_solver *solver)
         return bench_send(&record);
     }
     bench_eigen_run run = {.pairs = record.count,
+                           .basis = task->basis,
                            .tolerance = task->tolerance,
                            .sigma = bench_shift(&matrix),
                            .signs = task->signs,

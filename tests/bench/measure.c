@@ -59,13 +59,14 @@ void bench_limit_threads(void)
 
 static void start_worker(const bench_task *task, int reply)
 {
-    char descriptor[16], pairs[16], tolerance[32], timeout[16];
+    char descriptor[16], pairs[16], basis[16], tolerance[32], timeout[16];
     snprintf(descriptor, sizeof descriptor, "%d", task->descriptor);
     snprintf(pairs, sizeof pairs, "%d", (int)task->pairs);
+    snprintf(basis, sizeof basis, "%d", (int)task->basis);
     snprintf(tolerance, sizeof tolerance, "%.17g", task->tolerance);
     snprintf(timeout, sizeof timeout, "%d", (int)task->timeout);
     dup2(reply, REPLY);
-    execl("/proc/self/exe", "bench-worker", "--worker", task->solver, descriptor, pairs, tolerance,
+    execl("/proc/self/exe", "bench-worker", "--worker", task->solver, descriptor, pairs, basis, tolerance,
           task->signs ? "1" : "0", timeout, (char *)NULL);
     _exit(127);
 }
@@ -103,14 +104,15 @@ void bench_run_worker(const bench_task *task, bench_record *record)
 
 bool bench_is_worker(int argc, char **argv, bench_task *task)
 {
-    if (argc != 8 || strcmp(argv[1], "--worker") != 0) {
+    if (argc != 9 || strcmp(argv[1], "--worker") != 0) {
         return false;
     }
     *task = (bench_task){.descriptor = atoi(argv[3]),
                          .pairs = atoi(argv[4]),
-                         .tolerance = strtod(argv[5], NULL),
-                         .signs = argv[6][0] == '1',
-                         .timeout = atoi(argv[7])};
+                         .basis = atoi(argv[5]),
+                         .tolerance = strtod(argv[6], NULL),
+                         .signs = argv[7][0] == '1',
+                         .timeout = atoi(argv[8])};
     snprintf(task->solver, sizeof task->solver, "%s", argv[2]);
     alarm((unsigned)task->timeout);
     return true;

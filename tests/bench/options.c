@@ -8,7 +8,7 @@ static void usage(const char *name)
 {
     fprintf(stderr,
             "usage: %s [--max-facets N] [--mesh FILE]... [--generated] [--runs R] [--pairs K] [--signs]\n"
-            "       [--only NAME,NAME] [--all] [--timeout S] [--csv FILE]\n",
+            "       [--only NAME,NAME] [--all] [--basis N] [--timeout S] [--csv FILE]\n",
             name);
 }
 
@@ -35,6 +35,8 @@ static bool set_number(bench_options *o, const char *key, const char *text)
         o->runs = (int32_t)value;
     } else if (strcmp(key, "--pairs") == 0 && value <= BENCH_MAX_PAIRS) {
         o->pairs = (int32_t)value;
+    } else if (strcmp(key, "--basis") == 0 && value <= 10 * BENCH_MAX_PAIRS) {
+        o->basis = (int32_t)value;
     } else if (strcmp(key, "--timeout") == 0) {
         o->timeout = (int32_t)value;
     } else {

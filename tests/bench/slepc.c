@@ -78,7 +78,7 @@ static PetscErrorCode set_up(slepc *s, const bench_eigen_run *run)
     PetscCall(EPSSetOperators(s->eps, s->A, NULL));
     PetscCall(EPSSetProblemType(s->eps, EPS_HEP));
     PetscCall(EPSSetType(s->eps, EPSKRYLOVSCHUR));
-    PetscCall(EPSSetDimensions(s->eps, run->pairs, 5 * run->pairs / 2, PETSC_DEFAULT));
+    PetscCall(EPSSetDimensions(s->eps, run->pairs, bench_basis_size(run, 2 * run->pairs + 2, s->n), PETSC_DEFAULT));
     PetscCall(EPSSetTolerances(s->eps, run->tolerance, 1000));
     PetscCall(EPSSetWhichEigenpairs(s->eps, EPS_TARGET_MAGNITUDE));
     PetscCall(EPSSetTarget(s->eps, run->sigma));

@@ -7,6 +7,7 @@
 /* What an eigensolver is asked for and reports. */
 typedef struct bench_eigen_run {
     int32_t pairs;
+    int32_t basis;    /* columns a library may use; 0 = the default */
     double tolerance; /* its own */
     double sigma;     /* below the spectrum */
     bool signs;
@@ -28,6 +29,13 @@ typedef struct bench_eigen_solver {
     bool (*solve)(void *state, bench_eigen_run *run);
     const double *(*vector)(void *state, int32_t k);
 } bench_eigen_solver;
+
+/* Columns of a library's basis: what was asked for, else its own `best`. */
+static inline int32_t bench_basis_size(const bench_eigen_run *run, int32_t best, int32_t n)
+{
+    const int32_t basis = run->basis > run->pairs ? run->basis : best;
+    return basis < n ? basis : n;
+}
 
 /* Each phase of a sparse Cholesky solver; false = failed. */
 typedef struct bench_cholesky_solver {
