@@ -148,10 +148,12 @@ static void link_tree(sl_cholesky *F, const int32_t *below)
     F->below_first[0] = F->panel[0] = 0;
     memset(F->child, -1, (size_t)F->supernodes * sizeof *F->child);
     for (int32_t s = 0; s < F->supernodes; s++) {
-        const int64_t width = sl_supernode_width(F, s), size = width * (width + below[s]);
+        const int32_t width = sl_supernode_width(F, s);
+        const int64_t size = sl_own_size(width) + (int64_t)width * below[s];
         F->below_first[s + 1] = F->below_first[s] + below[s];
         F->panel[s + 1] = F->panel[s] + size;
         F->max_below = below[s] > F->max_below ? below[s] : F->max_below;
+        F->max_width = width > F->max_width ? width : F->max_width;
         F->max_panel = size > F->max_panel ? size : F->max_panel;
     }
     for (int32_t k = 0; k < F->supernodes; k++) {
@@ -214,11 +216,12 @@ static void list_rows_below(sl_cholesky *F, const sl_half *upper, int64_t *next,
     }
 }
 
-/* Number of row i within the panel of s. */
-static int32_t local_row(const sl_cholesky *F, int32_t s, int32_t i)
+/* Where the entry of row i and column k of L lies in the panel of s, the owner of k. */
+static int64_t place_in_panel(const sl_cholesky *F, int32_t s, int32_t i, int32_t k)
 {
+    const int32_t width = sl_supernode_width(F, s), column = k - F->first[s];
     if (i < F->first[s + 1]) {
-        return i - F->first[s];
+        return sl_own_place(width, i - F->first[s], column);
     }
     int64_t lo = F->below_first[s], hi = F->below_first[s + 1] - 1;
     while (lo < hi) {
@@ -230,7 +233,8 @@ static int32_t local_row(const sl_cholesky *F, int32_t s, int32_t i)
         }
     }
     SL_ASSERT(F->below[lo] == i);
-    return sl_supernode_width(F, s) + (int32_t)(lo - F->below_first[s]);
+    return sl_own_size(width) +
+           sl_below_place(width, sl_supernode_below(F, s), (int32_t)(lo - F->below_first[s]), column);
 }
 
 static int32_t entry_owner(const int32_t *place, const int32_t *owner, int32_t i, int32_t j)
@@ -254,15 +258,14 @@ static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, c
     for (int32_t k = 0; k < F->n; k++) {
         const int32_t s = owner[k];
         F->entry_from[next[s]] = (int32_t)A->colptr[F->perm[k]]; /* diagonal entries first: shifts are theirs */
-        F->entry_to[next[s]++] = (k - F->first[s]) * (sl_supernode_width(F, s) + sl_supernode_below(F, s) + 1);
+        F->entry_to[next[s]++] = (int32_t)place_in_panel(F, s, k, k);
     }
     for (int32_t j = 0; j < F->n; j++) {
         for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
             const int32_t a = place[j], b = place[A->row[p]];
             const int32_t column = a < b ? a : b, row = a < b ? b : a, s = owner[column];
-            const int32_t height = sl_supernode_width(F, s) + sl_supernode_below(F, s);
             F->entry_from[next[s]] = (int32_t)p;
-            F->entry_to[next[s]++] = (column - F->first[s]) * height + local_row(F, s, row);
+            F->entry_to[next[s]++] = (int32_t)place_in_panel(F, s, row, column);
         }
     }
 }
@@ -273,10 +276,10 @@ static int64_t deepest_updates(const sl_cholesky *F)
     int64_t top = 0, deepest = 0;
     for (int32_t k = 0; k < F->supernodes; k++) {
         const int32_t s = F->walk[k];
-        const int64_t own = (int64_t)sl_supernode_below(F, s) * sl_supernode_below(F, s);
+        const int64_t own = sl_packed_size(sl_supernode_below(F, s));
         deepest = top + own > deepest ? top + own : deepest;
         for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
-            top -= (int64_t)sl_supernode_below(F, c) * sl_supernode_below(F, c);
+            top -= sl_packed_size(sl_supernode_below(F, c));
         }
         top += own;
     }
@@ -323,6 +326,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     F->pattern_hash = sl_pattern_hash(A);
     F->pivot_rtol = def->pivot_rtol;
     F->kind = def->kind;
+    F->kernels = sl_kernels_best();
     F->perm = sl_alloc(F->n, sizeof *F->perm);
     SL_TRY(F->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     SL_TRY(scratch_init(A, &w));

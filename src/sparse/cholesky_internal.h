@@ -4,20 +4,22 @@
 #define SL_SPARSE_CHOLESKY_INTERNAL_H
 
 #include "sparse/cholesky.h"
+#include "sparse/kernels.h"
 
 /* Right-hand sides are solved for in groups of this many: their rows fill a cache line. */
 #define SL_SOLVE_WIDTH 8
 
-/* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel is column-major: one row for each of these
- * columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending. Supernodes are
- * numbered from the leaves up: first those of the bottom part, then those of the top, either in postorder; walk lists
- * them in a postorder of the whole tree. */
+/* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel (laid out as kernels.h says) has one row for
+ * each of these columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending.
+ * Supernodes are numbered from the leaves up: first those of the bottom part, then those of the top, either in
+ * postorder; walk lists them in a postorder of the whole tree. */
 struct sl_cholesky {
     int32_t n;
     int64_t pattern_nnz;   /* of A's lower triangle */
     uint64_t pattern_hash; /* so that values are not put into another pattern */
     double pivot_rtol;
     sl_factor_kind kind;
+    const sl_kernels *kernels;
     int32_t *perm; /* n: row k of P A P' is row perm[k] of A */
 
     int32_t supernodes;
@@ -37,7 +39,8 @@ struct sl_cholesky {
     int32_t *entry_from;
     int32_t *entry_to;
 
-    int32_t max_below;  /* rows below the widest update matrix */
+    int32_t max_width;  /* columns of the widest supernode */
+    int32_t max_below;  /* rows of the largest update matrix */
     int64_t max_panel;  /* doubles of the largest panel */
     int64_t max_update; /* doubles of the stack of update matrices at its highest */
     int32_t *child;     /* supernodes: last child in the walk, -1 = leaf */

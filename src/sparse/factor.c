@@ -10,6 +10,7 @@
 typedef struct walker {
     const sl_front_job *job;
     double *updates;   /* the stack */
+    double *spare;     /* of the kernels */
     double *panel;     /* where panels are made when they are not kept */
     int32_t *relative; /* max_below: a child's rows in its parent's numbering */
     int64_t top;       /* height of the stack */
@@ -47,21 +48,43 @@ static void match_rows(const sl_cholesky *F, int32_t c, int32_t s, int32_t *rela
     }
 }
 
+/* Row i of a child's update matrix into a row of the panel: to is its first column, stride the way to the next. */
+static void add_to_panel(const double *from, const int32_t *relative, int32_t count, double *to, int32_t stride)
+{
+    for (int32_t k = 0; k < count; k++) {
+        to[(int64_t)relative[k] * stride] += from[k];
+    }
+}
+
+static void add_to_update(const double *from, const int32_t *relative, int32_t count, double *to)
+{
+    for (int32_t k = 0; k < count; k++) {
+        to[relative[k]] += from[k];
+    }
+}
+
 /* Adds child c's update matrix U to the panel of s and, where both row and column are below it, to own. */
 static void extend_add(const walker *w, int32_t c, const double *U, int32_t s, double *panel, double *own)
 {
     const sl_cholesky *F = w->job->F;
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
     const int32_t rows = sl_supernode_below(F, c), *rel = w->relative;
+    double *lower = panel + sl_own_size(width);
+    int32_t in_panel = 0; /* columns of U that go to the panel */
     match_rows(F, c, s, w->relative);
-    for (int32_t k = 0; k < rows; k++) {
-        const double *from = U + (int64_t)k * rows;
-        const bool in_panel = rel[k] < width;
-        double *to = in_panel ? panel + (int64_t)rel[k] * (width + below) : own + (int64_t)(rel[k] - width) * below;
-        const int32_t shift = in_panel ? 0 : width;
-        for (int32_t i = k; i < rows; i++) {
-            to[rel[i] - shift] += from[i];
-        }
+    while (in_panel < rows && rel[in_panel] < width) {
+        in_panel++;
+    }
+    for (int32_t i = 0; i < in_panel; i++) {
+        const int32_t left = width - rel[i] / SL_SLAB * SL_SLAB;
+        add_to_panel(U, rel, i + 1, panel + sl_own_place(width, rel[i], 0), left < SL_SLAB ? left : SL_SLAB);
+        U += i + 1;
+    }
+    for (int32_t i = in_panel; i < rows; i++) {
+        const int32_t row = rel[i] - width, left = below - row / SL_SLAB * SL_SLAB;
+        add_to_panel(U, rel, in_panel, lower + sl_below_place(width, below, row, 0), left < SL_SLAB ? left : SL_SLAB);
+        add_to_update(U + in_panel, rel + in_panel, i + 1 - in_panel, own + sl_packed_size(row) - width);
+        U += i + 1;
     }
 }
 
@@ -70,8 +93,8 @@ static int32_t factor_supernode(walker *w, int32_t s)
 {
     const sl_front_job *job = w->job;
     const sl_cholesky *F = job->F;
-    const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s), height = width + below;
-    const int64_t own_size = (int64_t)below * below;
+    const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
+    const int64_t own_size = sl_packed_size(below);
     double *panel = job->L != NULL ? job->L + F->panel[s] : w->panel, *own = w->updates + w->top;
     int8_t *sign = job->sign != NULL ? job->sign + F->first[s] : NULL;
     memset(panel, 0, (size_t)(F->panel[s + 1] - F->panel[s]) * sizeof *panel);
@@ -79,14 +102,14 @@ static int32_t factor_supernode(walker *w, int32_t s)
     scatter_entries(job, s, panel);
     int64_t base = w->top;
     for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) { /* last child first: it is on top */
-        base -= (int64_t)sl_supernode_below(F, c) * sl_supernode_below(F, c);
+        base -= sl_packed_size(sl_supernode_below(F, c));
         extend_add(w, c, w->updates + base, s, panel, own);
     }
-    const int32_t bad = sl_front_factor(panel, width, height, job->least, job->replacement, sign);
+    const int32_t bad = F->kernels->factor(panel, width, below, job->pivoting, sign, w->spare);
     if (bad != -1) {
         return F->first[s] + bad;
     }
-    sl_front_update(panel, width, below, sign, own);
+    F->kernels->update(panel, width, below, sign, w->spare, 0, sl_slab_pairs(below), own);
     memmove(w->updates + base, own, (size_t)own_size * sizeof *own);
     w->top = base + own_size;
     if (job->panel_done != NULL) {
@@ -103,8 +126,9 @@ sl_status sl_factor_fronts(sl_front_job *job)
     job->bad = -1;
     w.updates = sl_alloc(F->max_update, sizeof *w.updates);
     w.relative = sl_alloc(F->max_below, sizeof *w.relative);
+    w.spare = sl_alloc(sl_front_spare(F->max_width), sizeof *w.spare);
     w.panel = sl_alloc(job->L == NULL ? F->max_panel : 0, sizeof *w.panel);
-    if (w.updates == NULL || w.relative == NULL || w.panel == NULL) {
+    if (w.updates == NULL || w.relative == NULL || w.spare == NULL || w.panel == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -114,6 +138,7 @@ sl_status sl_factor_fronts(sl_front_job *job)
 cleanup:
     sl_free(w.updates);
     sl_free(w.relative);
+    sl_free(w.spare);
     sl_free(w.panel);
     return status;
 }
@@ -160,8 +185,13 @@ sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sig
     sl_status status = SL_OK;
     SL_TRY(sl_check_values(F, A, sigma, &largest, &diagonal));
     SL_TRY(make_room(F));
-    sl_front_job job = {
-        .F = F, .A = A, .sigma = sigma, .least = F->pivot_rtol * diagonal, .L = F->L, .sign = F->sign, .bad = -1};
+    sl_front_job job = {.F = F,
+                        .A = A,
+                        .sigma = sigma,
+                        .pivoting = {F->pivot_rtol * diagonal, 0.0},
+                        .L = F->L,
+                        .sign = F->sign,
+                        .bad = -1};
     SL_TRY(sl_factor_fronts(&job));
     if (job.bad != -1) {
         if (bad_column != NULL) {
