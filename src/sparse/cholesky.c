@@ -4,6 +4,7 @@
 #include "sparse/cholesky_internal.h"
 #include "sparse/elimination.h"
 #include "sparse/supernode.h"
+#include "sparse/tasks.h"
 
 #include <string.h>
 
@@ -156,6 +157,9 @@ static void link_tree(sl_cholesky *F, const int32_t *below)
         F->max_width = width > F->max_width ? width : F->max_width;
         F->max_panel = size > F->max_panel ? size : F->max_panel;
     }
+    for (int32_t s = F->supernodes - 1; s >= 0; s--) {
+        F->odd[s] = F->parent[s] != -1 && !F->odd[F->parent[s]];
+    }
     for (int32_t k = 0; k < F->supernodes; k++) {
         const int32_t s = F->walk[k];
         F->sibling[s] = -1;
@@ -179,10 +183,11 @@ static sl_status adopt_partition(sl_cholesky *F, int32_t patch, scratch *w)
     F->walk = sl_alloc(count, sizeof *F->walk);
     F->below_first = sl_alloc(count + 1, sizeof *F->below_first);
     F->panel = sl_alloc(count + 1, sizeof *F->panel);
+    F->odd = sl_alloc(count, sizeof *F->odd);
     F->child = sl_alloc(count, sizeof *F->child);
     F->sibling = sl_alloc(count, sizeof *F->sibling);
     if (is_bottom == NULL || F->first == NULL || F->parent == NULL || F->walk == NULL || F->below_first == NULL ||
-        F->panel == NULL || F->child == NULL || F->sibling == NULL) {
+        F->panel == NULL || F->odd == NULL || F->child == NULL || F->sibling == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -270,20 +275,23 @@ static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, c
     }
 }
 
-/* Doubles on the stack of update matrices at its highest, when a supernode's own lies above its children's. */
-static int64_t deepest_updates(const sl_cholesky *F)
+/* Doubles on the stacks of update matrices at their highest, and the most rows that meet in one supernode. */
+static void find_largest(sl_cholesky *F)
 {
     int64_t top = 0, deepest = 0;
     for (int32_t k = 0; k < F->supernodes; k++) {
         const int32_t s = F->walk[k];
         const int64_t own = sl_packed_size(sl_supernode_below(F, s));
         deepest = top + own > deepest ? top + own : deepest;
+        int32_t family = 0;
         for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
             top -= sl_packed_size(sl_supernode_below(F, c));
+            family += sl_supernode_below(F, c);
         }
+        F->max_family = family > F->max_family ? family : F->max_family;
         top += own;
     }
-    return deepest;
+    F->max_update = deepest;
 }
 
 static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
@@ -302,8 +310,8 @@ static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
     sl_half_upper(A, w->place, w->next, &w->half);
     list_rows_below(F, &w->half, w->next, mark, owner);
     map_entries(F, A, w->place, owner, w->next);
-    F->max_update = deepest_updates(F);
-    return SL_OK;
+    find_largest(F);
+    return sl_tasks_create(F);
 }
 
 sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_cholesky **out)
@@ -384,5 +392,7 @@ void sl_cholesky_free(sl_cholesky *F)
     sl_free(F->entry_to);
     sl_free(F->child);
     sl_free(F->sibling);
+    sl_free(F->odd);
+    sl_tasks_clear(F);
     sl_free(F);
 }

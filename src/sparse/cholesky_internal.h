@@ -28,10 +28,10 @@ struct sl_cholesky {
     int32_t *parent;      /* supernodes: -1 for roots */
     int32_t *walk;        /* supernodes */
     int64_t *below_first; /* supernodes + 1 */
-    int32_t *below;
-    int64_t *panel; /* supernodes + 1: where a panel begins in L */
-    double *L;      /* NULL before the first factorisation */
-    int8_t *sign;   /* n: signs of D, NULL for LL' or before the first factorisation */
+    int32_t *below;       /* -1 - k for the k-th row outside of the supernode's task */
+    int64_t *panel;       /* supernodes + 1: where a panel begins in L */
+    double *L;            /* NULL before the first factorisation */
+    int8_t *sign;         /* n: signs of D, NULL for LL' or before the first factorisation */
 
     /* Entries of A by supernode: those of s are entry_first[s] .. entry_first[s + 1] - 1, entry_from[e] their place in
      * A, entry_to[e] their place in the panel. Those in the panel's first column come first. */
@@ -43,8 +43,18 @@ struct sl_cholesky {
     int32_t max_below;  /* rows of the largest update matrix */
     int64_t max_panel;  /* doubles of the largest panel */
     int64_t max_update; /* doubles of the stack of update matrices at its highest */
+    int32_t max_family; /* rows of all update matrices that go into one supernode */
     int32_t *child;     /* supernodes: last child in the walk, -1 = leaf */
     int32_t *sibling;   /* supernodes: next child of the same parent, backwards in the walk */
+    bool *odd;          /* supernodes: at odd depth in the tree */
+
+    /* Task t: the subtree walk[task_begin[t]] .. walk[task_end[t] - 1], the root last. Its columns touch no other
+     * task's; outside[outside_first[t]] .. are the rows below its root, where its updates of the crown go. */
+    int32_t task_count;
+    int32_t *task; /* supernodes: -1 = crown */
+    int32_t *task_begin, *task_end;
+    int64_t *outside_first; /* task_count + 1 */
+    int32_t *outside;
 };
 
 /* FNV-1a over the pointers and rows of A. */
@@ -68,6 +78,13 @@ static inline int32_t sl_supernode_width(const sl_cholesky *F, int32_t s)
 static inline int32_t sl_supernode_below(const sl_cholesky *F, int32_t s)
 {
     return (int32_t)(F->below_first[s + 1] - F->below_first[s]);
+}
+
+/* Rows below task root or crown supernode s, by their true numbers. */
+static inline const int32_t *sl_true_rows(const sl_cholesky *F, int32_t s)
+{
+    const int32_t t = F->task[s];
+    return t == -1 ? F->below + F->below_first[s] : F->outside + F->outside_first[t];
 }
 
 #endif

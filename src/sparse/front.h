@@ -5,7 +5,7 @@
 
 #include "sparse/cholesky_internal.h"
 
-/* Called with each finished panel, children before parents. */
+/* Called with each finished panel, children before parents, supernodes of different tasks at the same time. */
 typedef void sl_panel_fn(void *user, int32_t s, const double *panel, const int8_t *sign);
 
 /* How a walk treats pivots and where its panels go. */
@@ -22,7 +22,7 @@ typedef struct sl_front_job {
 } sl_front_job;
 
 /* SL_OK also when a pivot stopped it; SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_factor_fronts(sl_front_job *job);
+SL_NODISCARD sl_status sl_factor_fronts(sl_front_job *job, const sl_context *context);
 
 /* max|a_ij| and max|a_ii| of A - sigma I; SL_BAD_INPUT when a value is not finite or A has another pattern than F. */
 SL_NODISCARD sl_status sl_check_values(const sl_cholesky *F, const sl_csc *A, double sigma, double *largest,

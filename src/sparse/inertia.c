@@ -8,14 +8,21 @@
 /* Pivots no larger than this share of max|a_ij| are replaced by it: it is far below any error bound. */
 static const double tiny_pivot = 0x1p-100;
 
-/* What is gathered as panels come and go: L here is the scaled |D|^(1/2) one. */
+/* What is gathered as panels of one task, or of the crown, come and go. L here is the scaled L |D|^(1/2). */
+typedef struct harvest {
+    double *column; /* 2 max_width: sums and largest entries of the columns at hand */
+    double max_l, max_d;
+    int32_t zero, negative;
+} harvest;
+
+/* Sums over the rows of L: n of them, then those outside of the tasks, by task. */
 typedef struct gathering {
     const sl_cholesky *F;
-    double *row_sum;     /* n: row sums of |L| |L'| */
-    int32_t *row_length; /* n: entries in each row of L */
-    double *column;      /* 2 max_width: sums and largest entries of the columns at hand */
+    double *row_sum;     /* of |L| |L'| */
+    int32_t *row_length; /* entries */
+    harvest *task;       /* task_count, and the crown */
+    double *column;      /* room for theirs */
     double replaced;     /* the reciprocal root that tells a replaced pivot */
-    sl_inertia_info info;
 } gathering;
 
 /* Sums and largest entry of each column of |L| in the panel; length: width each. */
@@ -42,6 +49,12 @@ static void scan_columns(const double *panel, int32_t width, int32_t below, doub
     }
 }
 
+/* Where row r of a supernode in task t is summed. */
+static int64_t place_of_row(const sl_cholesky *F, int32_t t, int32_t r)
+{
+    return r >= 0 ? r : F->n + F->outside_first[t] - 1 - r;
+}
+
 static void add_to_row_sums(gathering *g, int32_t s, const double *panel, const double *sum)
 {
     const sl_cholesky *F = g->F;
@@ -59,10 +72,13 @@ static void add_to_row_sums(gathering *g, int32_t s, const double *panel, const 
     for (int32_t i = 0; i < below; i += SL_SLAB) {
         const int32_t rows = below - i < SL_SLAB ? below - i : SL_SLAB;
         for (int32_t r = 0; r < rows; r++) {
-            g->row_length[row[i + r]] += width;
+            const int64_t place = place_of_row(F, F->task[s], row[i + r]);
+            double total = 0.0;
             for (int32_t k = 0; k < width; k++) {
-                g->row_sum[row[i + r]] += fabs(slab[k * rows + r]) * sum[k];
+                total += fabs(slab[k * rows + r]) * sum[k];
             }
+            g->row_sum[place] += total;
+            g->row_length[place] += width;
         }
         slab += (int64_t)rows * width;
     }
@@ -73,64 +89,99 @@ static void add_panel(void *user, int32_t s, const double *panel, const int8_t *
     gathering *g = user;
     const sl_cholesky *F = g->F;
     const int32_t width = sl_supernode_width(F, s);
-    double *largest = g->column + F->max_width;
-    scan_columns(panel, width, sl_supernode_below(F, s), g->column, largest);
-    add_to_row_sums(g, s, panel, g->column);
+    harvest *h = &g->task[F->task[s] != -1 ? F->task[s] : F->task_count];
+    double *largest = h->column + F->max_width;
+    scan_columns(panel, width, sl_supernode_below(F, s), h->column, largest);
+    add_to_row_sums(g, s, panel, h->column);
     for (int32_t k = 0; k < width; k++) {
         const double reciprocal = panel[sl_own_place(width, k, k)];
-        g->info.max_l = fmax(g->info.max_l, largest[k] * reciprocal);
-        g->info.max_d = fmax(g->info.max_d, 1.0 / (reciprocal * reciprocal));
-        g->info.zero += reciprocal == g->replaced;
-        g->info.negative += sign[k] < 0;
+        h->max_l = fmax(h->max_l, largest[k] * reciprocal);
+        h->max_d = fmax(h->max_d, 1.0 / (reciprocal * reciprocal));
+        h->zero += reciprocal == g->replaced;
+        h->negative += sign[k] < 0;
     }
 }
 
+static void gathering_clear(gathering *g)
+{
+    sl_free(g->row_sum);
+    sl_free(g->row_length);
+    sl_free(g->task);
+    sl_free(g->column);
+}
+
+static sl_status gathering_init(gathering *g, const sl_cholesky *F)
+{
+    const int64_t sums = F->n + F->outside_first[F->task_count], columns = 2 * (int64_t)F->max_width;
+    *g = (gathering){.F = F};
+    g->row_sum = sl_calloc(sums, sizeof *g->row_sum);
+    g->row_length = sl_calloc(sums, sizeof *g->row_length);
+    g->task = sl_calloc((int64_t)F->task_count + 1, sizeof *g->task);
+    g->column = sl_alloc(columns * (F->task_count + 1), sizeof *g->column);
+    if (g->row_sum == NULL || g->row_length == NULL || g->task == NULL || g->column == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t t = 0; t <= F->task_count; t++) {
+        g->task[t].column = g->column + columns * t;
+    }
+    return SL_OK;
+}
+
+/* Tasks into one, in their order. */
+static void merge_harvests(gathering *g, sl_inertia_info *info)
+{
+    const sl_cholesky *F = g->F;
+    for (int32_t t = 0; t <= F->task_count; t++) {
+        const harvest *h = &g->task[t];
+        info->max_l = fmax(info->max_l, h->max_l);
+        info->max_d = fmax(info->max_d, h->max_d);
+        info->zero += h->zero;
+        info->negative += h->negative;
+    }
+    for (int64_t k = 0; k < F->outside_first[F->task_count]; k++) {
+        g->row_sum[F->outside[k]] += g->row_sum[F->n + k];
+        g->row_length[F->outside[k]] += g->row_length[F->n + k];
+    }
+    info->positive = F->n - info->negative - info->zero;
+}
+
 /* ||E||_inf, from |E| <= gamma |L||D||L'| by rows; the shift's rounding and replaced pivots on top. */
-static void bound_error(gathering *g)
+static double error_bound(const gathering *g, const sl_inertia_info *info)
 {
     const double unit = 0.5 * DBL_EPSILON;
     double largest = 0.0;
     for (int32_t i = 0; i < g->F->n; i++) {
-        const double terms = g->row_length[i] + 4.0; /* a product each, the root, the quotient, the scaling */
+        const double terms = g->row_length[i] + 4.0; /* a product each, the root, its reciprocal, the scaling */
         largest = fmax(largest, terms * unit / (1.0 - terms * unit) * g->row_sum[i]);
     }
-    const double replaced = g->info.zero > 0 ? 2.0 * tiny_pivot * g->info.max_a : 0.0;
-    g->info.backward_error = largest + unit * g->info.max_a + replaced;
-    g->info.growth = g->info.max_a > 0.0 ? g->info.max_d / g->info.max_a : 1.0;
-    g->info.positive = g->F->n - g->info.negative - g->info.zero;
-    if (!isfinite(g->info.backward_error)) {
-        g->info.backward_error = INFINITY;
-    }
+    const double replaced = info->zero > 0 ? 2.0 * tiny_pivot * info->max_a : 0.0;
+    const double bound = largest + unit * info->max_a + replaced;
+    return isfinite(bound) ? bound : INFINITY;
 }
 
 sl_status sl_inertia(const sl_cholesky *F, const sl_csc *A, double sigma, const sl_context *context,
                      sl_inertia_info *info)
 {
-    (void)context;
-    gathering g = {.F = F};
+    gathering g = {0};
+    sl_inertia_info found = {0};
     int8_t *sign = NULL;
     double diagonal;
     sl_status status = SL_OK;
-    SL_TRY(sl_check_values(F, A, sigma, &g.info.max_a, &diagonal));
+    SL_TRY(sl_check_values(F, A, sigma, &found.max_a, &diagonal));
     sign = sl_alloc(F->n, sizeof *sign);
-    g.row_sum = sl_calloc(F->n, sizeof *g.row_sum);
-    g.row_length = sl_calloc(F->n, sizeof *g.row_length);
-    g.column = sl_alloc(2 * (int64_t)F->max_width, sizeof *g.column);
-    if (sign == NULL || g.column == NULL || g.row_sum == NULL || g.row_length == NULL) {
-        status = SL_OUT_OF_MEMORY;
-        goto cleanup;
-    }
-    const double least = fmax(tiny_pivot * g.info.max_a, DBL_MIN);
+    SL_TRY(sign != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(gathering_init(&g, F));
+    const double least = fmax(tiny_pivot * found.max_a, DBL_MIN);
     g.replaced = 1.0 / sqrt(least);
     sl_front_job job = {
         .F = F, .A = A, .sigma = sigma, .pivoting = {least, least}, .sign = sign, .panel_done = add_panel, .user = &g};
-    SL_TRY(sl_factor_fronts(&job));
-    bound_error(&g);
-    *info = g.info;
+    SL_TRY(sl_factor_fronts(&job, context));
+    merge_harvests(&g, &found);
+    found.backward_error = error_bound(&g, &found);
+    found.growth = found.max_a > 0.0 ? found.max_d / found.max_a : 1.0;
+    *info = found;
 cleanup:
     sl_free(sign);
-    sl_free(g.column);
-    sl_free(g.row_sum);
-    sl_free(g.row_length);
+    gathering_clear(&g);
     return status;
 }

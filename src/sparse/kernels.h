@@ -54,21 +54,26 @@ typedef struct sl_pivoting {
     double least, replacement;
 } sl_pivoting;
 
-/* Right-hand sides of a solve: row r of the block begins at X + r * w; a row -1 - k at outside + k * w. */
+/* Right-hand sides of a solve: row r of the block begins at X + (r - origin) * w; a row -1 - k at outside + k * w. */
 typedef struct sl_rows {
     double *X, *outside;
-    int32_t w;
+    int32_t w, origin;
 } sl_rows;
 
 typedef struct sl_kernels {
     const char *name;
 
-    /* panel := L of P A P' = L S L'; the bad column or -1. sign: width, NULL = S is I. spare: sl_front_spare(width)
-     * doubles, handed on to update. */
-    int32_t (*factor)(double *panel, int32_t width, int32_t below, sl_pivoting pivoting, int8_t *sign, double *spare);
+    /* panel := L of P A P' = L S L', in steps: open; for every SL_KERNEL_DEPTH-th column `begin`, columns (which
+     * returns the bad column or -1), then trail over the pairs [0, sl_trail_pairs) of slabs; close. sign: width, NULL =
+     * S is I. spare: sl_front_spare(width) doubles from open to the last update. */
+    void (*open)(double *panel, int32_t width, int32_t below, double *spare);
+    int32_t (*columns)(double *panel, int32_t width, int32_t below, int32_t begin, sl_pivoting pivoting, int8_t *sign,
+                       double *spare);
+    void (*trail)(double *panel, int32_t width, int32_t below, int32_t begin, int8_t *sign, double *spare,
+                  int32_t pair_begin, int32_t pair_end);
+    void (*close)(double *panel, int32_t width, int32_t below, double *spare);
 
-    /* U -= L21 S L21' for the pairs of column slabs [begin, end) of sl_slab_pairs(below). spare: as factor left it, or
-     * a copy of it for each thread. */
+    /* U := -L21 S L21' for the pairs of column slabs [begin, end) of sl_slab_pairs(below). */
     void (*update)(const double *panel, int32_t width, int32_t below, const int8_t *sign, double *spare, int32_t begin,
                    int32_t end, double *U);
 
@@ -87,6 +92,14 @@ static inline int64_t sl_front_spare(int32_t width)
 static inline int32_t sl_slab_pairs(int32_t below)
 {
     return (below + 2 * SL_SLAB - 1) / (2 * SL_SLAB);
+}
+
+/* Pairs of slabs right of and below the columns from `begin` on; 0 when these are the last. */
+static inline int32_t sl_trail_pairs(int32_t width, int32_t below, int32_t begin)
+{
+    const int32_t end = begin + SL_KERNEL_DEPTH;
+    const int32_t slabs = (width + SL_SLAB - 1) / SL_SLAB + (below + SL_SLAB - 1) / SL_SLAB - end / SL_SLAB;
+    return end < width ? (slabs + 1) / 2 : 0;
 }
 
 /* The widest this machine runs. */

@@ -276,62 +276,82 @@ SL_KERNEL void subtract_product(const front *f, int32_t begin, int32_t end, int3
     }
 }
 
-SL_KERNEL_ENTRY int32_t front_factor(double *panel, int32_t width, int32_t below, sl_pivoting pivoting, int8_t *sign,
-                                     double *spare)
+/* Ragged slabs to their padded copies. */
+SL_KERNEL_ENTRY void front_open(double *panel, int32_t width, int32_t below, double *spare)
+{
+    const front f = front_at(panel, width, below, NULL, spare);
+    const int32_t own_rest = width % SL_SLAB, below_rest = below % SL_SLAB;
+    if (own_rest > 0) {
+        pad_slab(panel + sl_slab_offset(f.own_full), own_rest, width, f.own_tail);
+    }
+    if (below_rest > 0) {
+        pad_slab(f.lower + (int64_t)f.below_full * SL_SLAB * width, below_rest, width, f.below_tail);
+    }
+}
+
+/* And back. */
+SL_KERNEL_ENTRY void front_close(double *panel, int32_t width, int32_t below, double *spare)
+{
+    const front f = front_at(panel, width, below, NULL, spare);
+    const int32_t own_rest = width % SL_SLAB, below_rest = below % SL_SLAB;
+    if (own_rest > 0) {
+        unpad_slab(f.own_tail, own_rest, width, panel + sl_slab_offset(f.own_full));
+    }
+    if (below_rest > 0) {
+        unpad_slab(f.below_tail, below_rest, width, f.lower + (int64_t)f.below_full * SL_SLAB * width);
+    }
+}
+
+SL_KERNEL_ENTRY int32_t front_columns(double *panel, int32_t width, int32_t below, int32_t begin, sl_pivoting pivoting,
+                                      int8_t *sign, double *spare)
 {
     const front f = front_at(panel, width, below, sign, spare);
-    const int32_t own_rest = width - f.own_full * SL_SLAB, below_rest = below - f.below_full * SL_SLAB;
-    double *own_ragged = panel + sl_slab_offset(f.own_full);
-    double *below_ragged = f.lower + (int64_t)f.below_full * SL_SLAB * width;
     int32_t bad = -1;
-    if (own_rest > 0) {
-        pad_slab(own_ragged, own_rest, width, f.own_tail);
-    }
-    if (below_rest > 0) {
-        pad_slab(below_ragged, below_rest, width, f.below_tail);
-    }
-    for (int32_t begin = 0; begin < width && bad == -1; begin += SL_KERNEL_DEPTH) {
-        const int32_t end = begin + SL_KERNEL_DEPTH;
-        for (int32_t g = begin / SL_SLAB; g < f.own_slabs && g * SL_SLAB < end && bad == -1; g++) {
-            bad = factor_block(&f, g, begin, pivoting);
-        }
-        for (int32_t h = end / SL_SLAB; end < width && bad == -1 && h < f.own_slabs + f.below_slabs; h += 2) {
-            subtract_product(&f, begin, end, h);
-        }
-    }
-    if (own_rest > 0) {
-        unpad_slab(f.own_tail, own_rest, width, own_ragged);
-    }
-    if (below_rest > 0) {
-        unpad_slab(f.below_tail, below_rest, width, below_ragged);
+    for (int32_t g = begin / SL_SLAB; g < f.own_slabs && g * SL_SLAB < begin + SL_KERNEL_DEPTH && bad == -1; g++) {
+        bad = factor_block(&f, g, begin, pivoting);
     }
     return bad;
 }
 
-/* Rows 8 h .. of U, the columns from 8 g on: all of one or two tiles below the diagonal. */
+SL_KERNEL_ENTRY void front_trail(double *panel, int32_t width, int32_t below, int32_t begin, int8_t *sign,
+                                 double *spare, int32_t pair_begin, int32_t pair_end)
+{
+    const front f = front_at(panel, width, below, sign, spare);
+    const int32_t end = begin + SL_KERNEL_DEPTH;
+    for (int32_t p = pair_begin; p < pair_end; p++) {
+        subtract_product(&f, begin, end, end / SL_SLAB + 2 * p);
+    }
+}
+
+/* U - sum, or -sum where U has no meaning yet. */
+SL_KERNEL vec subtract_or_begin(const double *U, vec sum, bool fresh)
+{
+    return vec_subtract(fresh ? vec_of(0.0) : vec_load(U), sum);
+}
+
+/* Rows 8 h .. of U, the columns from 8 g on: two tiles below the diagonal. */
 SL_KERNEL void subtract_rows(double *U, int32_t h, int32_t g, const vec sum0[SL_SLAB], const vec sum1[SL_SLAB],
-                             bool two)
+                             bool fresh)
 {
     double *at = U + sl_packed_size((int64_t)h * SL_SLAB) + (int64_t)g * SL_SLAB;
 #pragma GCC unroll 8
     for (int j = 0; j < SL_SLAB; j++) {
-        vec_store(at, vec_subtract(vec_load(at), sum0[j]));
-        if (two) {
-            vec_store(at + SL_SLAB, vec_subtract(vec_load(at + SL_SLAB), sum1[j]));
-        }
+        vec_store(at, subtract_or_begin(at, sum0[j], fresh));
+        vec_store(at + SL_SLAB, subtract_or_begin(at + SL_SLAB, sum1[j], fresh));
         at += (int64_t)h * SL_SLAB + j + 1;
     }
 }
 
 /* One tile on the diagonal or in the last, shorter slab of rows. */
-SL_KERNEL void subtract_edge(double *U, int32_t below, int32_t h, int32_t g, const vec sum[SL_SLAB])
+SL_KERNEL void subtract_edge(double *U, int32_t below, int32_t h, int32_t g, const vec sum[SL_SLAB], bool fresh)
 {
     double *at = U + sl_packed_size((int64_t)h * SL_SLAB) + (int64_t)g * SL_SLAB;
 #pragma GCC unroll 8
     for (int j = 0; j < SL_SLAB; j++) {
         const int32_t row = h * SL_SLAB + j, room = row + 1 - g * SL_SLAB, count = room < SL_SLAB ? room : SL_SLAB;
         if (row < below && count > 0) {
-            vec_store_part(at, vec_subtract(vec_load_part(at, count), sum[j]), count);
+            const vec old = fresh ? vec_of(0.0) : vec_load_part(at, count);
+            vec_store_part(at, vec_subtract(old, sum[j]), count);
         }
         at += row + 1;
     }
@@ -351,14 +371,14 @@ SL_KERNEL_ENTRY void front_update(const double *panel, int32_t width, int32_t be
             const double *a1 =
                 two ? signed_slab(below_slab(&f, g + 1), sign, k, stop, f.pair + SL_SLAB * SL_KERNEL_DEPTH) : a0;
             product_1(a0, below_slab(&f, g) + (int64_t)k * SL_SLAB, stop - k, sum0);
-            subtract_edge(U, below, g, g, sum0);
+            subtract_edge(U, below, g, g, sum0, k == 0);
             for (int32_t h = g + 1; h < f.below_slabs; h++) {
                 product_2(a0, a1, below_slab(&f, h) + (int64_t)k * SL_SLAB, stop - k, sum0, sum1);
                 if (h > g + 1 && h < f.below_full) {
-                    subtract_rows(U, h, g, sum0, sum1, true);
+                    subtract_rows(U, h, g, sum0, sum1, k == 0);
                 } else {
-                    subtract_edge(U, below, h, g, sum0);
-                    subtract_edge(U, below, h, g + 1, sum1);
+                    subtract_edge(U, below, h, g, sum0, k == 0);
+                    subtract_edge(U, below, h, g + 1, sum1, k == 0);
                 }
             }
         }

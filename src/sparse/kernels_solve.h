@@ -20,7 +20,7 @@ SL_KERNEL void side_store(double *p, vec v, int sides)
 
 SL_KERNEL double *row_at(sl_rows rows, int32_t r)
 {
-    return r >= 0 ? rows.X + (int64_t)r * rows.w : rows.outside + (int64_t)(-1 - r) * rows.w;
+    return r >= 0 ? rows.X + (int64_t)(r - rows.origin) * rows.w : rows.outside + (int64_t)(-1 - r) * rows.w;
 }
 
 /* x[i] -= sum over k < columns of slab[k][i] own[k], for count rows. */

@@ -3,6 +3,8 @@
 #include "base/memory.h"
 #include "sparse/cholesky_internal.h"
 
+#include <string.h>
+
 /* Right-hand sides are solved for in groups, stored row by row: W[k * b + c] is unknown k of side c, so a supernode's
  * rows are one dense block and a scattered row is one cache line. */
 
@@ -18,49 +20,121 @@ static void apply_signs(const int8_t *sign, int32_t width, int32_t w, double *ow
 
 int64_t sl_cholesky_block_work_size(const sl_cholesky *F, int32_t w)
 {
-    return (int64_t)w * F->max_below;
+    return (int64_t)w * F->outside_first[F->task_count];
 }
 
-/* The supernodes of a part. */
-static void part_range(const sl_cholesky *F, sl_part part, int32_t *begin, int32_t *end)
+/* A solve over one part. */
+typedef struct part_solve {
+    const sl_cholesky *F;
+    int32_t begin, end; /* its supernodes */
+    int32_t origin;     /* row of the first of X: TOP leaves the bottom rows out */
+    double *X, *work;
+    int32_t w;
+} part_solve;
+
+static part_solve part_of(const sl_cholesky *F, sl_part part, double *X, int32_t w, double *work)
 {
-    *begin = part == SL_PART_TOP ? F->bottom : 0;
-    *end = part == SL_PART_BOTTOM ? F->bottom : F->supernodes;
+    SL_ASSERT(w >= 1 && w <= SL_CHOLESKY_MAX_BLOCK && F->L != NULL);
+    part_solve p = {.F = F, .X = X, .work = work, .w = w};
+    p.begin = part == SL_PART_TOP ? F->bottom : 0;
+    p.end = part == SL_PART_BOTTOM ? F->bottom : F->supernodes;
+    p.origin = F->first[p.begin];
+    return p;
+}
+
+/* Rows of X that stand for the rows outside of task t; they are summed or copied in work. */
+static double *outside_of(const part_solve *p, int32_t t)
+{
+    return p->work + p->F->outside_first[t] * p->w;
+}
+
+static void forward_supernode(const part_solve *p, int32_t s, double *outside)
+{
+    const sl_cholesky *F = p->F;
+    const sl_rows rows = {p->X, outside, p->w, p->origin};
+    F->kernels->forward(F->L + F->panel[s], sl_supernode_width(F, s), sl_supernode_below(F, s),
+                        F->below + F->below_first[s], p->X + (int64_t)(F->first[s] - p->origin) * p->w, rows);
+}
+
+static void backward_supernode(const part_solve *p, int32_t s, double *outside)
+{
+    const sl_cholesky *F = p->F;
+    const sl_rows rows = {p->X, outside, p->w, p->origin};
+    const int32_t width = sl_supernode_width(F, s);
+    double *own = p->X + (int64_t)(F->first[s] - p->origin) * p->w;
+    if (F->sign != NULL) {
+        apply_signs(F->sign + F->first[s], width, p->w, own);
+    }
+    F->kernels->backward(F->L + F->panel[s], width, sl_supernode_below(F, s), F->below + F->below_first[s], own, rows);
+}
+
+static void forward_task(void *user, int64_t begin, int64_t end, int32_t t)
+{
+    (void)begin, (void)end;
+    const part_solve *p = user;
+    const sl_cholesky *F = p->F;
+    const int64_t size = (F->outside_first[t + 1] - F->outside_first[t]) * p->w;
+    memset(outside_of(p, t), 0, (size_t)size * sizeof(double));
+    for (int32_t k = F->task_begin[t]; k < F->task_end[t]; k++) {
+        if (F->walk[k] >= p->begin && F->walk[k] < p->end) {
+            forward_supernode(p, F->walk[k], outside_of(p, t));
+        }
+    }
+}
+
+static void backward_task(void *user, int64_t begin, int64_t end, int32_t t)
+{
+    (void)begin, (void)end;
+    const part_solve *p = user;
+    const sl_cholesky *F = p->F;
+    double *outside = outside_of(p, t);
+    for (int64_t k = F->outside_first[t]; k < F->outside_first[t + 1]; k++) {
+        memcpy(outside, p->X + (int64_t)(F->outside[k] - p->origin) * p->w, (size_t)p->w * sizeof *outside);
+        outside += p->w;
+    }
+    for (int32_t k = F->task_end[t] - 1; k >= F->task_begin[t]; k--) {
+        if (F->walk[k] >= p->begin && F->walk[k] < p->end) {
+            backward_supernode(p, F->walk[k], outside_of(p, t));
+        }
+    }
+}
+
+/* What tasks have for the crown, in their order. */
+static void add_outside(const part_solve *p)
+{
+    const sl_cholesky *F = p->F;
+    const double *from = p->work;
+    for (int64_t k = 0; k < F->outside_first[F->task_count]; k++) {
+        double *to = p->X + (int64_t)(F->outside[k] - p->origin) * p->w;
+        for (int32_t c = 0; c < p->w; c++) {
+            to[c] += *from++;
+        }
+    }
 }
 
 void sl_cholesky_forward_part(const sl_cholesky *F, sl_part part, double *X, int32_t w, double *work,
                               const sl_context *context)
 {
-    (void)context;
-    (void)work;
-    int32_t begin, end;
-    part_range(F, part, &begin, &end);
-    const int32_t origin = F->first[begin]; /* TOP: X begins with the first top row */
-    const sl_rows rows = {X - (int64_t)origin * w, NULL, w};
-    for (int32_t s = begin; s < end; s++) {
-        F->kernels->forward(F->L + F->panel[s], sl_supernode_width(F, s), sl_supernode_below(F, s),
-                            F->below + F->below_first[s], X + (int64_t)(F->first[s] - origin) * w, rows);
+    part_solve p = part_of(F, part, X, w, work);
+    sl_parallel_for(context, F->task_count, 1, forward_task, &p);
+    add_outside(&p);
+    for (int32_t s = p.begin; s < p.end; s++) {
+        if (F->task[s] == -1) {
+            forward_supernode(&p, s, NULL);
+        }
     }
 }
 
 void sl_cholesky_backward_part(const sl_cholesky *F, sl_part part, double *X, int32_t w, double *work,
                                const sl_context *context)
 {
-    (void)context;
-    (void)work;
-    int32_t begin, end;
-    part_range(F, part, &begin, &end);
-    const int32_t origin = F->first[begin];
-    const sl_rows rows = {X - (int64_t)origin * w, NULL, w};
-    for (int32_t s = end - 1; s >= begin; s--) {
-        double *own = X + (int64_t)(F->first[s] - origin) * w;
-        const int32_t width = sl_supernode_width(F, s);
-        if (F->sign != NULL) {
-            apply_signs(F->sign + F->first[s], width, w, own);
+    part_solve p = part_of(F, part, X, w, work);
+    for (int32_t s = p.end - 1; s >= p.begin; s--) {
+        if (F->task[s] == -1) {
+            backward_supernode(&p, s, NULL);
         }
-        F->kernels->backward(F->L + F->panel[s], width, sl_supernode_below(F, s), F->below + F->below_first[s], own,
-                             rows);
     }
+    sl_parallel_for(context, F->task_count, 1, backward_task, &p);
 }
 
 void sl_cholesky_permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)

@@ -8,7 +8,7 @@
 static const struct {
     int32_t columns;
     double zeros;
-} relaxation[] = {{4, 1.0}, {16, 0.8}, {48, 0.1}, {INT32_MAX, 0.05}};
+} relaxation[] = {{4, 0.5}, {8, 0.4}, {16, 0.25}, {48, 0.1}, {INT32_MAX, 0.03}};
 
 /* Supernodes before and while being merged. */
 typedef struct merger {

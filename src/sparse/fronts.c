@@ -1,0 +1,359 @@
+/* Multifrontal factorisation. Source: Duff, Reid 1983; Liu 1992. A supernode's panel takes A's entries and its
+ * children's update matrices, is factored, and leaves its own update matrix for its parent. */
+#include "base/memory.h"
+#include "sparse/front.h"
+
+#include <string.h>
+
+/* Fronts with this many multiplications and more are shared among workers. */
+static const double shared_work = 4e6;
+
+/* One walk's own memory. Update matrices live on two stacks that grow from the ends of one array: those of supernodes
+ * at even depth from the left, at odd depth from the right, so that a parent's is not made where its children's lie. */
+typedef struct walker {
+    const sl_front_job *job;
+    const sl_context *context; /* for large fronts, NULL = serial */
+    double *updates;
+    int64_t room, left, right; /* doubles: all, used on either side */
+    double **kept;             /* by task: update matrices of their roots; NULL = they are on the stacks */
+    double *panel;             /* where panels are made when they are not kept */
+    double *spare;             /* of the kernels */
+    int32_t *relative;         /* max_family: rows of the children in their parent's numbering */
+} walker;
+
+static void walker_clear(walker *w)
+{
+    sl_free(w->updates);
+    sl_free(w->panel);
+    sl_free(w->spare);
+    sl_free(w->relative);
+}
+
+static sl_status walker_init(walker *w, const sl_front_job *job, int64_t room)
+{
+    const sl_cholesky *F = job->F;
+    *w = (walker){.job = job, .room = room};
+    w->updates = sl_alloc(room, sizeof *w->updates);
+    w->panel = sl_alloc(job->L == NULL ? F->max_panel : 0, sizeof *w->panel);
+    w->spare = sl_alloc(sl_front_spare(F->max_width), sizeof *w->spare);
+    w->relative = sl_alloc(F->max_family, sizeof *w->relative);
+    return w->updates != NULL && w->panel != NULL && w->spare != NULL && w->relative != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+}
+
+static double *push_update(walker *w, int32_t s)
+{
+    const sl_cholesky *F = w->job->F;
+    const int64_t size = sl_packed_size(sl_supernode_below(F, s));
+    SL_ASSERT(w->left + w->right + size <= w->room);
+    if (F->odd[s]) {
+        w->right += size;
+        return w->updates + w->room - w->right;
+    }
+    w->left += size;
+    return w->updates + w->left - size;
+}
+
+/* Those of children, last first, so that *depth doubles on their stack are passed. */
+static const double *find_update(const walker *w, int32_t c, int64_t *depth)
+{
+    const sl_cholesky *F = w->job->F;
+    if (w->kept != NULL && F->task[c] != -1) {
+        return w->kept[F->task[c]];
+    }
+    *depth += sl_packed_size(sl_supernode_below(F, c));
+    return F->odd[c] ? w->updates + w->room - w->right + *depth - sl_packed_size(sl_supernode_below(F, c))
+                     : w->updates + w->left - *depth;
+}
+
+static void pop_updates(walker *w, int32_t s)
+{
+    const sl_cholesky *F = w->job->F;
+    for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
+        const int64_t size = sl_packed_size(sl_supernode_below(F, c));
+        if (w->kept != NULL && F->task[c] != -1) {
+            sl_free(w->kept[F->task[c]]);
+            w->kept[F->task[c]] = NULL;
+        } else if (F->odd[c]) {
+            w->right -= size;
+        } else {
+            w->left -= size;
+        }
+    }
+}
+
+/* A's entries into the panel of s. */
+static void scatter_entries(const sl_front_job *job, int32_t s, double *panel)
+{
+    const sl_cholesky *F = job->F;
+    const int64_t begin = F->entry_first[s], end = F->entry_first[s + 1];
+    const int32_t width = sl_supernode_width(F, s);
+    for (int64_t e = begin; e < end; e++) {
+        panel[F->entry_to[e]] = job->A->val[F->entry_from[e]];
+    }
+    for (int64_t e = begin; e < begin + width; e++) {
+        panel[F->entry_to[e]] -= job->sigma;
+    }
+}
+
+/* relative[i] = number of child c's i-th row within the panel of its parent s. Both lists are in the same order. */
+static void match_rows(const sl_cholesky *F, int32_t c, int32_t s, int32_t *relative)
+{
+    const int32_t rows = sl_supernode_below(F, c), width = sl_supernode_width(F, s);
+    const int32_t *row = F->task[c] != F->task[s] ? sl_true_rows(F, c) : F->below + F->below_first[c];
+    const int32_t *to = F->below + F->below_first[s];
+    int32_t i = 0;
+    for (; i < rows && row[i] >= 0 && row[i] < F->first[s + 1]; i++) {
+        relative[i] = row[i] - F->first[s];
+    }
+    for (int32_t k = 0; i < rows; i++) {
+        while (to[k] != row[i]) {
+            k++;
+        }
+        relative[i] = width + k;
+    }
+}
+
+static int32_t columns_in_panel(const int32_t *relative, int32_t rows, int32_t width)
+{
+    int32_t count = 0;
+    while (count < rows && relative[count] < width) {
+        count++;
+    }
+    return count;
+}
+
+/* Rows of a slab around row i of `rows`. */
+static int32_t slab_rows(int32_t rows, int32_t i)
+{
+    const int32_t left = rows - i / SL_SLAB * SL_SLAB;
+    return left < SL_SLAB ? left : SL_SLAB;
+}
+
+static void add_strided(const double *from, const int32_t *relative, int32_t count, double *to, int32_t stride)
+{
+    for (int32_t k = 0; k < count; k++) {
+        to[(int64_t)relative[k] * stride] += from[k];
+    }
+}
+
+/* Those columns of a child's update matrix U that s owns. */
+static void add_to_panel(const sl_cholesky *F, const double *U, int32_t rows, const int32_t *relative, int32_t s,
+                         double *panel)
+{
+    const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
+    const int32_t owned = columns_in_panel(relative, rows, width);
+    double *lower = panel + sl_own_size(width);
+    for (int32_t i = 0; i < owned; i++) {
+        add_strided(U + sl_packed_size(i), relative, i + 1, panel + sl_own_place(width, relative[i], 0),
+                    slab_rows(width, relative[i]));
+    }
+    for (int32_t i = owned; i < rows; i++) {
+        const int32_t row = relative[i] - width;
+        add_strided(U + sl_packed_size(i), relative, owned, lower + sl_below_place(width, below, row, 0),
+                    slab_rows(below, row));
+    }
+}
+
+/* The others, to the update matrix of s. */
+static void add_to_update(const double *U, int32_t rows, const int32_t *relative, int32_t width, double *own)
+{
+    const int32_t owned = columns_in_panel(relative, rows, width);
+    for (int32_t i = owned; i < rows; i++) {
+        const double *from = U + sl_packed_size(i);
+        double *to = own + sl_packed_size(relative[i] - width) - width;
+        if (relative[i] - relative[owned] == i - owned) { /* no gaps */
+            to += relative[owned] - owned;
+            for (int32_t k = owned; k <= i; k++) {
+                to[k] += from[k];
+            }
+            continue;
+        }
+        for (int32_t k = owned; k <= i; k++) {
+            to[relative[k]] += from[k];
+        }
+    }
+}
+
+/* A part of a front for sl_parallel_for. */
+typedef struct shared_front {
+    const sl_kernels *kernels;
+    double *panel, *spare, *U;
+    int8_t *sign;
+    int32_t width, below, begin;
+} shared_front;
+
+static void trail_some(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const shared_front *f = user;
+    f->kernels->trail(f->panel, f->width, f->below, f->begin, f->sign, f->spare, (int32_t)begin, (int32_t)end);
+}
+
+static void update_some(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const shared_front *f = user;
+    f->kernels->update(f->panel, f->width, f->below, f->sign, f->spare, (int32_t)begin, (int32_t)end, f->U);
+}
+
+/* Products with signs need room of their own: only fronts without are shared. */
+static const sl_context *sharing(const walker *w, const shared_front *f)
+{
+    const double height = (double)f->width + f->below;
+    if (w->context == NULL || f->width * height * height < shared_work) {
+        return NULL;
+    }
+    for (int32_t k = 0; k < f->width && f->sign != NULL; k++) {
+        if (f->sign[k] < 0) {
+            return NULL;
+        }
+    }
+    return w->context;
+}
+
+static int32_t factor_panel(const walker *w, shared_front *f, sl_pivoting pivoting)
+{
+    int32_t bad = -1;
+    f->kernels->open(f->panel, f->width, f->below, f->spare);
+    memset(f->sign != NULL ? f->sign : (int8_t *)f->spare, 1, f->sign != NULL ? (size_t)f->width : 0);
+    for (f->begin = 0; f->begin < f->width && bad == -1; f->begin += SL_KERNEL_DEPTH) {
+        bad = f->kernels->columns(f->panel, f->width, f->below, f->begin, pivoting, f->sign, f->spare);
+        const int32_t pairs = bad == -1 ? sl_trail_pairs(f->width, f->below, f->begin) : 0;
+        if (pairs > 0) {
+            sl_parallel_for(sharing(w, f), pairs, 4, trail_some, f);
+        }
+    }
+    f->kernels->close(f->panel, f->width, f->below, f->spare);
+    return bad;
+}
+
+/* Returns the bad column or -1. */
+static int32_t factor_supernode(walker *w, int32_t s)
+{
+    const sl_front_job *job = w->job;
+    const sl_cholesky *F = job->F;
+    const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
+    double *panel = job->L != NULL ? job->L + F->panel[s] : w->panel, *own = push_update(w, s);
+    int8_t *sign = job->sign != NULL ? job->sign + F->first[s] : NULL;
+    int32_t *relative = w->relative;
+    int64_t depth = 0;
+    memset(panel, 0, (size_t)(F->panel[s + 1] - F->panel[s]) * sizeof *panel);
+    scatter_entries(job, s, panel);
+    for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
+        match_rows(F, c, s, relative);
+        add_to_panel(F, find_update(w, c, &depth), sl_supernode_below(F, c), relative, s, panel);
+        relative += sl_supernode_below(F, c);
+    }
+    shared_front f = {F->kernels, panel, w->spare, own, sign, width, below, 0};
+    const int32_t bad = factor_panel(w, &f, job->pivoting);
+    if (bad != -1) {
+        return F->first[s] + bad;
+    }
+    sl_parallel_for(sharing(w, &f), sl_slab_pairs(below), 2, update_some, &f);
+    relative = w->relative;
+    depth = 0;
+    for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
+        add_to_update(find_update(w, c, &depth), sl_supernode_below(F, c), relative, width, own);
+        relative += sl_supernode_below(F, c);
+    }
+    pop_updates(w, s);
+    if (job->panel_done != NULL) {
+        job->panel_done(job->user, s, panel, sign);
+    }
+    return -1;
+}
+
+/* Tasks by workers. */
+typedef struct task_job {
+    const sl_front_job *job;
+    double **kept;     /* results, by task */
+    int32_t *bad;      /* -1 = none */
+    sl_status *status; /* by task */
+} task_job;
+
+/* The deepest its stacks become; a root's own update matrix is above its children's. */
+static int64_t room_of_task(const sl_cholesky *F, int32_t t)
+{
+    int64_t top = 0, deepest = 0;
+    for (int32_t k = F->task_begin[t]; k < F->task_end[t]; k++) {
+        const int32_t s = F->walk[k];
+        top += sl_packed_size(sl_supernode_below(F, s));
+        deepest = top > deepest ? top : deepest;
+        for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
+            top -= sl_packed_size(sl_supernode_below(F, c));
+        }
+    }
+    return deepest;
+}
+
+static void run_task(void *user, int64_t begin, int64_t end, int32_t t)
+{
+    (void)begin, (void)end;
+    task_job *tasks = user;
+    const sl_cholesky *F = tasks->job->F;
+    const int32_t root = F->walk[F->task_end[t] - 1];
+    const int64_t size = sl_packed_size(sl_supernode_below(F, root));
+    walker w;
+    sl_status status = SL_OK;
+    SL_TRY(walker_init(&w, tasks->job, room_of_task(F, t)));
+    for (int32_t k = F->task_begin[t]; k < F->task_end[t] && tasks->bad[t] == -1; k++) {
+        tasks->bad[t] = factor_supernode(&w, F->walk[k]);
+    }
+    tasks->kept[t] = sl_copy(F->odd[root] ? w.updates + w.room - size : w.updates, size, sizeof **tasks->kept);
+    SL_TRY(tasks->kept[t] != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+cleanup:
+    walker_clear(&w);
+    tasks->status[t] = status;
+}
+
+/* All tasks by the workers, then the crown. */
+static sl_status factor_in_parallel(walker *w, sl_front_job *job, const sl_context *context)
+{
+    const sl_cholesky *F = job->F;
+    const int64_t count = F->task_count;
+    task_job tasks = {.job = job};
+    sl_status status = SL_OK;
+    tasks.kept = sl_calloc(count, sizeof *tasks.kept);
+    tasks.bad = sl_alloc(count, sizeof *tasks.bad);
+    tasks.status = sl_alloc(count, sizeof *tasks.status);
+    SL_TRY(tasks.kept != NULL && tasks.bad != NULL && tasks.status != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    memset(tasks.bad, -1, (size_t)count * sizeof *tasks.bad);
+    sl_parallel_for(context, count, 1, run_task, &tasks);
+    for (int32_t t = 0; t < count; t++) {
+        SL_TRY(tasks.status[t]);
+    }
+    w->kept = tasks.kept;
+    w->context = context;
+    for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
+        const int32_t s = F->walk[k], t = F->task[s];
+        job->bad = t == -1 ? factor_supernode(w, s) : tasks.bad[t];
+    }
+cleanup:
+    for (int32_t t = 0; t < count && tasks.kept != NULL; t++) {
+        sl_free(tasks.kept[t]);
+    }
+    sl_free(tasks.kept);
+    sl_free(tasks.bad);
+    sl_free(tasks.status);
+    return status;
+}
+
+sl_status sl_factor_fronts(sl_front_job *job, const sl_context *context)
+{
+    const sl_cholesky *F = job->F;
+    const bool parallel = context != NULL && context->executor != NULL && context->executor->workers > 1;
+    walker w = {0};
+    sl_status status = SL_OK;
+    job->bad = -1;
+    SL_TRY(walker_init(&w, job, F->max_update));
+    if (parallel && F->task_count > 0) {
+        SL_TRY(factor_in_parallel(&w, job, context));
+    } else {
+        for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
+            job->bad = factor_supernode(&w, F->walk[k]);
+        }
+    }
+cleanup:
+    walker_clear(&w);
+    return status;
+}
