@@ -8,6 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { PLACING_RETRIES = 6 };
+static const double PAGE_SHRINKAGE = 1.0 - 0x1p-12; /* half a texel of 2048: the margins lose a 4096th */
+
 sl_atlas_def sl_atlas_default(void)
 {
     return (sl_atlas_def){
@@ -64,7 +67,26 @@ static sl_status pack_input_init(const sl_atlas *atlas, pack_input *input)
     return SL_OK;
 }
 
-/* Places the charts on the page and writes their UVs as files hold them. */
+/* The charts' UVs on the page: in the short decimals that files hold, or as they come (more digits in the file). */
+static void place_corners(sl_atlas *atlas, bool quantise)
+{
+    const sl_mesh *mesh = atlas->mesh;
+    const sl_segmentation *seg = atlas->segmentation;
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        const sl_placement *p = &atlas->placement[seg->face_chart[mesh->face[h]]];
+        const double *uv = seg->corner_uv + 2 * (int64_t)h;
+        const double c = cos(p->angle), s = sin(p->angle);
+        double *out = atlas->corner_uv + 2 * (int64_t)h;
+        out[0] = atlas->pack.scale * (c * uv[0] - s * uv[1]) + p->offset[0];
+        out[1] = atlas->pack.scale * (s * uv[0] + c * uv[1]) + p->offset[1];
+        for (int k = 0; k < 2 && quantise; k++) {
+            out[k] = sl_uv_quantise(out[k]);
+        }
+        memcpy(atlas->input_corner_uv + 2 * (int64_t)sl_input_corner(mesh, h), out, 2 * sizeof *out);
+    }
+}
+
+/* Places the charts on the page. */
 static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
 {
     const sl_mesh *mesh = atlas->mesh;
@@ -80,15 +102,6 @@ static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_
     }
     SL_TRY(pack_input_init(atlas, &input));
     SL_TRY(sl_pack(seg->nchart, input.chart, &def->pack, context, atlas->placement, &atlas->pack));
-    for (int32_t h = 0; h < mesh->nh; h++) {
-        const sl_placement *p = &atlas->placement[seg->face_chart[mesh->face[h]]];
-        const double *uv = seg->corner_uv + 2 * (int64_t)h;
-        const double c = cos(p->angle), s = sin(p->angle);
-        double *out = atlas->corner_uv + 2 * (int64_t)h;
-        out[0] = sl_uv_quantise(atlas->pack.scale * (c * uv[0] - s * uv[1]) + p->offset[0]);
-        out[1] = sl_uv_quantise(atlas->pack.scale * (s * uv[0] + c * uv[1]) + p->offset[1]);
-        memcpy(atlas->input_corner_uv + 2 * (int64_t)sl_input_corner(mesh, h), out, 2 * sizeof *out);
-    }
 cleanup:
     pack_input_clear(&input);
     return status;
@@ -103,6 +116,29 @@ static sl_warning *push_warning(sl_atlas *atlas, int32_t chart)
     atlas->warning = grown;
     grown[atlas->nwarning].chart = chart;
     return &grown[atlas->nwarning++];
+}
+
+/* Facets that stand alone are exempt from the bound, bent ones may exceed it: the worst is named. */
+static sl_status warn_of_bent_facets(sl_atlas *atlas, const sl_atlas_def *def)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    const double bound = def->segment.flatten.max_stretch;
+    int32_t worst = -1, count = 0;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        const double l2 = seg->chart[c].flat.distortion.l2;
+        if (seg->chart[c].flat.verdict == SL_CHART_VALID && l2 > bound) {
+            count++;
+            worst = worst < 0 || l2 > seg->chart[worst].flat.distortion.l2 ? c : worst;
+        }
+    }
+    sl_warning *w = count > 0 ? push_warning(atlas, worst) : NULL;
+    if (w == NULL) {
+        return count > 0 ? SL_OUT_OF_MEMORY : SL_OK;
+    }
+    snprintf(w->text, sizeof w->text,
+             "%d facets stand alone and are stretched above the bound %.4g, most of all facet %d (chart %d, L2 %.4g)",
+             count, bound, seg->face[seg->chart[worst].first], worst, seg->chart[worst].flat.distortion.l2);
+    return SL_OK;
 }
 
 /* A chart that is not what was asked for is named. */
@@ -134,7 +170,7 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
         }
         snprintf(w->text, sizeof w->text, "%d facets without area get one texel each", atlas->repair.degenerate_faces);
     }
-    return SL_OK;
+    return warn_of_bent_facets(atlas, def);
 }
 
 /* Charts of the user's own seams must be disks: nothing else can be flattened. */
@@ -176,6 +212,39 @@ static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl
     return SL_OK;
 }
 
+static bool only_texels_meet(const sl_atlas_check *check)
+{
+    return !check->passed && check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0;
+}
+
+/* Writes the UVs and judges them; in the rare cases that need it, with all digits (triangles smaller than the quantum)
+ * or on a page a little smaller (slivers that only the rounding of a texel count turns over, seen at its centres). */
+static sl_status place_and_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
+{
+    sl_status status = SL_OK;
+    bool quantise = true;
+    for (int32_t attempt = 0; attempt <= PLACING_RETRIES; attempt++) {
+        place_corners(atlas, quantise);
+        SL_TRY(sl_atlas_clear_borders(atlas, context));
+        SL_TRY(sl_atlas_verify(atlas, def, context));
+        if (atlas->check.passed || (!quantise && !only_texels_meet(&atlas->check))) {
+            break;
+        }
+        if (!only_texels_meet(&atlas->check)) {
+            quantise = false;
+            continue;
+        }
+        atlas->pack.scale *= PAGE_SHRINKAGE;
+        atlas->pack.fill *= PAGE_SHRINKAGE * PAGE_SHRINKAGE;
+        for (int32_t c = 0; c < atlas->segmentation->nchart; c++) {
+            atlas->placement[c].offset[0] *= PAGE_SHRINKAGE;
+            atlas->placement[c].offset[1] *= PAGE_SHRINKAGE;
+        }
+    }
+cleanup:
+    return status;
+}
+
 sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context, sl_atlas **out,
                     sl_diag *diag)
 {
@@ -200,7 +269,7 @@ sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const 
         sl_diag_hint(diag, "raise --resolution or lower --margin");
     }
     SL_TRY(status);
-    SL_TRY(sl_atlas_verify(atlas, def, context));
+    SL_TRY(place_and_verify(atlas, def, context));
     SL_TRY(warn_of_charts(atlas, def));
     *out = atlas;
     return SL_OK;
@@ -253,4 +322,10 @@ double sl_atlas_seam_length(const sl_mesh *mesh)
         length += mesh->sew[h] > h ? sl_mesh_edge_length(mesh, h) : 0.0;
     }
     return length;
+}
+
+double sl_atlas_seam_diagonals(const sl_mesh *mesh)
+{
+    const double length = sl_atlas_seam_length(mesh);
+    return length > 0.0 ? length / sl_mesh_diagonal(mesh) : 0.0; /* a mesh of one point has no diagonal */
 }

@@ -48,7 +48,8 @@ typedef struct sl_atlas {
     sl_warning *warning;
 } sl_atlas;
 
-/* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check. *out is given also when its
+/* polygons: borrowed. Steps: build, cut (by def->seams), flatten, pack, quantise, check (with all digits, or on a
+ * page smaller by a 4096th, where the first try fails). *out is given also when its
  * check did not pass (look at check.passed: what fails must not be delivered). SL_BAD_INPUT, SL_INFEASIBLE (the user's
  * seams leave a chart that is no disk, or too many charts for the page), SL_LIMIT (the cap on
  * charts left one that cannot be laid flat), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL.
@@ -62,7 +63,10 @@ void sl_atlas_free(sl_atlas *atlas); /* NULL is a no-op */
  * the caller (sl_free). SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_atlas_seams(const sl_mesh *mesh, int32_t **halfedge, int32_t *count);
 
-/* Total length of the seams, normalised mesh; divide by sl_mesh_diagonal for the usual figure. */
+/* Total length of the seams, normalised mesh. */
 double sl_atlas_seam_length(const sl_mesh *mesh);
+
+/* The same over the diagonal of the bounding box; 0 for a mesh without extent. */
+double sl_atlas_seam_diagonals(const sl_mesh *mesh);
 
 #endif

@@ -9,4 +9,8 @@
  * then texel counts over the whole page. SL_OUT_OF_MEMORY, SL_BAD_INPUT (a UV is not finite). */
 SL_NODISCARD sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context);
 
+/* Makes room where a chart's border comes closer to itself on the page than a texel count can tell, where the chart
+ * stays an embedding. Before sl_atlas_verify. SL_OUT_OF_MEMORY, SL_BAD_INPUT (a UV is not finite). */
+SL_NODISCARD sl_status sl_atlas_clear_borders(sl_atlas *atlas, const sl_context *context);
+
 #endif

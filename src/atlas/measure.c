@@ -2,6 +2,7 @@
 
 #include "atlas/weld.h"
 #include "base/memory.h"
+#include "mesh/triangulate.h"
 #include "overlap/coverage.h"
 
 #include <math.h>
@@ -14,10 +15,11 @@ typedef struct face_edge {
     double length;
 } face_edge;
 
-/* The atlas taken apart: fan triangles grouped by chart. */
+/* The atlas taken apart: triangles grouped by chart. */
 typedef struct atlas_view {
     const sl_polygons *polygons;
     sl_mesh *mesh; /* for the repair's reorientation and the normalisation */
+    sl_triangulation *triangulation;
     int32_t nt;
     double *xyz;         /* 9 nt, normalised */
     double *uv;          /* 6 nt, bounding square moved to [0, 1]^2 */
@@ -30,6 +32,7 @@ typedef struct atlas_view {
 static void view_clear(atlas_view *view)
 {
     sl_mesh_free(view->mesh);
+    sl_triangulation_free(view->triangulation);
     sl_free(view->xyz);
     sl_free(view->uv);
     sl_free(view->face_chart);
@@ -44,6 +47,12 @@ static int compare_edges(const void *pa, const void *pb)
     }
     if (a->b != b->b) {
         return a->b < b->b ? -1 : 1;
+    }
+    if (a->uv_a != b->uv_a) {
+        return a->uv_a < b->uv_a ? -1 : 1;
+    }
+    if (a->uv_b != b->uv_b) {
+        return a->uv_b < b->uv_b ? -1 : 1;
     }
     return (a->face > b->face) - (a->face < b->face);
 }
@@ -117,11 +126,8 @@ static sl_status find_charts(atlas_view *view, const double *corner_uv)
     for (int64_t begin = 0, end; begin < count; begin = end) {
         bool seam = false;
         for (end = begin + 1; end < count && edge[end].a == edge[begin].a && edge[end].b == edge[begin].b; end++) {
-            for (int64_t k = begin; k < end; k++) { /* a handful of facets share an edge */
-                if (edge[k].uv_a == edge[end].uv_a && edge[k].uv_b == edge[end].uv_b) {
-                    join_faces(parent, edge[k].face, edge[end].face);
-                    break;
-                }
+            if (edge[end].uv_a == edge[end - 1].uv_a && edge[end].uv_b == edge[end - 1].uv_b) {
+                join_faces(parent, edge[end - 1].face, edge[end].face);
             }
             seam |= edge[end].uv_a != edge[begin].uv_a || edge[end].uv_b != edge[begin].uv_b;
         }
@@ -140,19 +146,15 @@ cleanup:
     return status;
 }
 
-/* Writes fan triangle (0, k, k + 1) of facet f to slot t; corners swapped when `turn`. */
-static void put_triangle(atlas_view *view, const double *corner_uv, int32_t f, int32_t k, bool turn, int32_t t)
+/* Writes triangle k of the triangulation to slot t. */
+static void put_triangle(atlas_view *view, const double *corner_uv, int32_t k, int32_t t)
 {
-    const sl_polygons *p = view->polygons;
-    const int32_t first = p->face_first[f];
-    const int32_t corner[3] = {first, first + (turn ? k + 1 : k), first + (turn ? k : k + 1)};
+    const sl_mesh *mesh = view->mesh;
     for (int j = 0; j < 3; j++) {
-        const double *x = p->xyz + 3 * (int64_t)p->index[corner[j]];
-        for (int i = 0; i < 3; i++) {
-            view->xyz[9 * (int64_t)t + 3 * j + i] = (x[i] - view->mesh->centre[i]) * view->mesh->scale;
-        }
-        view->uv[6 * (int64_t)t + 2 * j] = corner_uv[2 * (int64_t)corner[j]];
-        view->uv[6 * (int64_t)t + 2 * j + 1] = corner_uv[2 * (int64_t)corner[j] + 1];
+        const int32_t h = view->triangulation->corner[3 * (int64_t)k + j];
+        const int64_t c = sl_input_corner(mesh, h);
+        memcpy(view->xyz + 9 * (int64_t)t + 3 * j, mesh->xyz + 3 * (int64_t)mesh->origin[h], 3 * sizeof *view->xyz);
+        memcpy(view->uv + 6 * (int64_t)t + 2 * j, corner_uv + 2 * c, 2 * sizeof *view->uv);
     }
 }
 
@@ -161,7 +163,7 @@ static double signed_area(const double uv[6])
     return 0.5 * ((uv[2] - uv[0]) * (uv[5] - uv[1]) - (uv[4] - uv[0]) * (uv[3] - uv[1]));
 }
 
-/* Fans grouped by chart, facet order inside a chart, all turned so that a chart's main orientation is positive. */
+/* Triangles grouped by chart, facet order inside a chart, all turned so that a chart's main orientation is positive. */
 static sl_status group_triangles(atlas_view *view, const double *corner_uv)
 {
     const sl_polygons *p = view->polygons;
@@ -187,10 +189,9 @@ static sl_status group_triangles(atlas_view *view, const double *corner_uv)
         goto cleanup;
     }
     for (int32_t f = 0; f < p->nf; f++) {
-        const bool reversed = (view->mesh->face_flags[f] & SL_FACE_REVERSED) != 0;
-        for (int32_t k = 1; k + 1 < p->face_first[f + 1] - p->face_first[f]; k++) {
+        for (int32_t k = view->triangulation->first[f]; k < view->triangulation->first[f + 1]; k++) {
             const int32_t t = slot[view->face_chart[f]]++;
-            put_triangle(view, corner_uv, f, k, reversed, t);
+            put_triangle(view, corner_uv, k, t);
             area[view->face_chart[f]] += signed_area(view->uv + 6 * (int64_t)t);
         }
     }
@@ -372,6 +373,7 @@ sl_status sl_measure_atlas(const sl_polygons *polygons, const double *corner_uv,
     sl_status status = SL_OK;
     SL_TRY(check_uvs(polygons, corner_uv, diag));
     SL_TRY(sl_mesh_build(polygons, &view.mesh, NULL, diag));
+    SL_TRY(sl_triangulation_create(view.mesh, &view.triangulation));
     view.face_chart = sl_alloc(polygons->nf, sizeof *view.face_chart);
     if (view.face_chart == NULL) {
         status = SL_OUT_OF_MEMORY;
@@ -383,7 +385,7 @@ sl_status sl_measure_atlas(const sl_polygons *polygons, const double *corner_uv,
     m.triangles = view.nt;
     m.charts = view.charts;
     m.seam_length = area > 0.0 ? view.seam_length / sqrt(area) : 0.0;
-    m.seam_diagonal = view.seam_length / sl_mesh_diagonal(view.mesh);
+    m.seam_diagonal = view.seam_length > 0.0 ? view.seam_length / sl_mesh_diagonal(view.mesh) : 0.0;
     SL_TRY(sl_distortion_measure(view.nt, view.xyz, view.uv, 1, &m.global));
     SL_TRY(measure_charts(&view, &m));
     fit_bounding_square(&view);

@@ -7,7 +7,8 @@
 #include "mesh/build.h"
 #include "param/distortion.h"
 
-/* Positions and UVs are welded by exact value; facets are fans from their first corner. A seam edge has two or more
+/* Positions and UVs are welded by exact value; facets are fans from their first corner, cut into ears
+ * where that fan turns over in 3D (a valid map of a concave facet would count as flipped). A seam edge has two or more
  * facets with different UVs along it; borders of the mesh are none. Charts join over edges with equal UVs. */
 typedef struct sl_atlas_measure {
     int32_t triangles;

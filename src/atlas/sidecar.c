@@ -87,6 +87,7 @@ static json_t *options_json(const sl_atlas_def *def)
     json_object_set_new(j, "sew", json_boolean(s->sew));
     json_object_set_new(j, "sew_stretch", number(s->sew_stretch));
     json_object_set_new(j, "max_stretch", number(s->flatten.max_stretch));
+    json_object_set_new(j, "max_angle", number(s->flatten.max_angle));
     json_object_set_new(j, "max_charts", json_integer(s->max_charts));
     json_object_set_new(j, "energy", json_string(s->flatten.abf.energy == SL_ABF_WEIGHTED ? "weighted" : "unweighted"));
     json_object_set_new(j, "tutte", json_boolean(s->flatten.tutte));
@@ -218,8 +219,7 @@ static json_t *atlas_json(const sl_atlas *atlas, const sl_atlas_def *def)
     json_object_set_new(j, "certificate", certificate_json(atlas));
     json_object_set_new(j, "scale", number(atlas->pack.scale));
     json_object_set_new(j, "fill", number(atlas->pack.fill));
-    json_object_set_new(j, "seam_length_over_diagonal",
-                        number(sl_atlas_seam_length(atlas->mesh) / sl_mesh_diagonal(atlas->mesh)));
+    json_object_set_new(j, "seam_length_over_diagonal", number(sl_atlas_seam_diagonals(atlas->mesh)));
     json_object_set_new(j, "merges", json_integer(seg->merges));
     json_object_set_new(j, "warnings", warnings_json(atlas));
     json_object_set_new(j, "fallbacks", fallbacks_json(seg));

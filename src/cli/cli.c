@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -165,4 +166,10 @@ bool cli_make_folder(cli_run *run, const char *folder)
     }
     fprintf(stderr, "seamlab %s: cannot make the folder %s: %s\n", run->verb, folder, strerror(errno));
     return false;
+}
+
+bool cli_has_extension(const char *path, const char *extension)
+{
+    const size_t n = strlen(path), m = strlen(extension);
+    return n >= m && strcasecmp(path + n - m, extension) == 0;
 }

@@ -62,4 +62,7 @@ int cli_segment(int argc, char **argv);
 int cli_spectrum(int argc, char **argv);
 int cli_unwrap(int argc, char **argv);
 
+/* Does a file name end in this, whatever its case? */
+bool cli_has_extension(const char *path, const char *extension);
+
 #endif

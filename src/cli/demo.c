@@ -52,6 +52,7 @@ static int run_demo(cli_run *run, const sl_generator *generator, const char *fol
     sl_generated *mesh = NULL;
     sl_atlas *atlas = NULL;
     sl_polygons polygons;
+    cli_pictures pictures = {0};
     sl_status status = SL_OK;
     int code = CLI_DONE;
     if (!cli_make_folder(run, folder)) {
@@ -64,14 +65,18 @@ static int run_demo(cli_run *run, const sl_generator *generator, const char *fol
     if (!atlas->check.passed) {
         SL_TRY(SL_CHECK_FAILED);
     }
-    SL_TRY(write_demo(folder, generator->name, &polygons, atlas, &def, &diag));
-    code = cli_preview(run, folder, atlas);
+    code = cli_pictures_draw(run, atlas, &pictures);
+    if (code == CLI_DONE) {
+        SL_TRY(write_demo(folder, generator->name, &polygons, atlas, &def, &diag));
+        code = cli_pictures_write(run, folder, &pictures);
+    }
     if (code == CLI_DONE) {
         cli_note(run, "%d charts, seams %.2f diagonals, fill %.2f\n%s/%s.obj, %s/%s.atlas.json, pictures beside them",
-                 atlas->segmentation->nchart, sl_atlas_seam_length(atlas->mesh) / sl_mesh_diagonal(atlas->mesh),
-                 atlas->pack.fill, folder, generator->name, folder, generator->name);
+                 atlas->segmentation->nchart, sl_atlas_seam_diagonals(atlas->mesh), atlas->pack.fill, folder,
+                 generator->name, folder, generator->name);
     }
 cleanup:
+    cli_pictures_clear(&pictures);
     sl_atlas_free(atlas);
     sl_generated_free(mesh);
     return status != SL_OK ? cli_fail(run, status, &diag) : code;

@@ -1,6 +1,7 @@
 /* seamlab: the program. One verb a file. */
 #include "cli/cli.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,19 +36,31 @@ static void print_usage(FILE *out)
             "3 bad input, 4 infeasible or a warning under --strict, 5 own check failed, 6 limit, 130 interrupted.\n");
 }
 
+/* Text that did not reach standard output (a full disk) is no success. */
+static int flushed(int code)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) {
+        return code;
+    }
+    if (code == CLI_DONE) {
+        fprintf(stderr, "seamlab: writing to standard output failed: %s\n", strerror(errno));
+    }
+    return code == CLI_DONE ? CLI_INTERNAL : code;
+}
+
 int main(int argc, char **argv)
 {
     if (argc >= 2 && strcmp(argv[1], "--version") == 0) {
         printf("seamlab %s\n", SEAMLAB_VERSION);
-        return CLI_DONE;
+        return flushed(CLI_DONE);
     }
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_usage(argc < 2 ? stderr : stdout);
-        return argc < 2 ? CLI_USAGE : CLI_DONE;
+        return flushed(argc < 2 ? CLI_USAGE : CLI_DONE);
     }
     for (size_t k = 0; k < SL_COUNTOF(verbs); k++) {
         if (strcmp(argv[1], verbs[k].name) == 0) {
-            return verbs[k].run(argc, argv);
+            return flushed(verbs[k].run(argc, argv));
         }
     }
     fprintf(stderr, "seamlab: there is no verb '%s'\n", argv[1]);

@@ -8,21 +8,12 @@
 /* Checkerboard squares across the atlas: about 48 of its texel rows a square at the default resolution. */
 static const double preview_checks = 48.0;
 
-static sl_status write_picture(const char *folder, const char *name, const sl_image *image, sl_diag *diag)
-{
-    char path[4096];
-    if (!cli_join_path(folder, name, path, sizeof path)) {
-        sl_diag_reason(diag, "the folder's name is too long");
-        return SL_IO;
-    }
-    return sl_png_write(path, image, diag);
-}
+static const char *const picture_names[CLI_PICTURES] = {"both.png", "model.png", "atlas.png"};
 
-static sl_status draw(const char *folder, const sl_atlas *atlas, const sl_context *context, sl_diag *diag)
+static sl_status draw(const sl_atlas *atlas, const sl_context *context, cli_pictures *out, sl_diag *diag)
 {
     sl_scene scene = sl_scene_default();
     sl_picture picture = sl_picture_default();
-    sl_image *image = NULL;
     sl_status status = SL_OK;
     scene.mesh = atlas->mesh;
     scene.triangulation = atlas->triangulation;
@@ -32,29 +23,48 @@ static sl_status draw(const char *folder, const sl_atlas *atlas, const sl_contex
     picture.back_view = true;
     picture.width = 2160;
     picture.height = 760;
-    SL_TRY(sl_render_pair(&scene, NULL, &picture, context, &image, diag));
-    SL_TRY(write_picture(folder, "both.png", image, diag));
-    sl_image_free(image);
-    image = NULL;
+    SL_TRY(sl_render_pair(&scene, NULL, &picture, context, &out->image[0], diag));
     picture = sl_picture_default();
-    SL_TRY(sl_render_3d(&scene, NULL, &picture, context, &image, diag));
-    SL_TRY(write_picture(folder, "model.png", image, diag));
-    sl_image_free(image);
-    image = NULL;
+    SL_TRY(sl_render_3d(&scene, NULL, &picture, context, &out->image[1], diag));
     picture.width = 1280;
     picture.height = 1280;
-    SL_TRY(sl_render_uv(&scene, &picture, context, &image, diag));
-    SL_TRY(write_picture(folder, "atlas.png", image, diag));
+    SL_TRY(sl_render_uv(&scene, &picture, context, &out->image[2], diag));
 cleanup:
-    sl_image_free(image);
     return status;
 }
 
-int cli_preview(cli_run *run, const char *folder, const sl_atlas *atlas)
+int cli_pictures_draw(cli_run *run, const sl_atlas *atlas, cli_pictures *out)
 {
     sl_diag diag = sl_diag_none();
+    *out = (cli_pictures){0};
+    return cli_fail(run, draw(atlas, &run->context, out, &diag), &diag);
+}
+
+int cli_pictures_write(cli_run *run, const char *folder, const cli_pictures *pictures)
+{
     if (!cli_make_folder(run, folder)) {
         return CLI_INTERNAL;
     }
-    return cli_fail(run, draw(folder, atlas, &run->context, &diag), &diag);
+    for (int k = 0; k < CLI_PICTURES; k++) {
+        char path[4096];
+        sl_diag diag = sl_diag_none();
+        sl_status status = SL_IO;
+        if (!cli_join_path(folder, picture_names[k], path, sizeof path)) {
+            sl_diag_reason(&diag, "the folder's name is too long");
+        } else {
+            status = sl_png_write(path, pictures->image[k], &diag);
+        }
+        if (status != SL_OK) {
+            return cli_fail(run, status, &diag);
+        }
+    }
+    return CLI_DONE;
+}
+
+void cli_pictures_clear(cli_pictures *pictures)
+{
+    for (int k = 0; k < CLI_PICTURES; k++) {
+        sl_image_free(pictures->image[k]);
+        pictures->image[k] = NULL;
+    }
 }

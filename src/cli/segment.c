@@ -92,7 +92,7 @@ cleanup:
 
 static void print_summary(cli_run *run, const sl_mesh *mesh, const sl_segmentation *seg)
 {
-    const double seam = sl_atlas_seam_length(mesh) / sl_mesh_diagonal(mesh);
+    const double seam = sl_atlas_seam_diagonals(mesh);
     int32_t invalid = 0;
     for (int32_t c = 0; c < seg->nchart; c++) {
         invalid += seg->chart[c].flat.verdict != SL_CHART_VALID;
@@ -155,7 +155,15 @@ int cli_segment(int argc, char **argv)
     cli_segment_table(&segment, options + OWN);
     cli_common_options(&run, options + OWN + CLI_SEGMENT_OPTIONS);
     int code = cli_parse(&verb, options, ALL, argc, argv, 2, files, &file_count);
-    if (code >= 0 || (code = cli_begin(&run)) >= 0) {
+    if (code >= 0) {
+        return code;
+    }
+    if (out.ply != NULL && !cli_has_extension(out.ply, ".ply")) {
+        fprintf(stderr, "seamlab segment: -o writes a coloured .ply, not %s; `unwrap` writes .obj\n", out.ply);
+        return CLI_USAGE;
+    }
+    code = cli_begin(&run);
+    if (code >= 0) {
         return code;
     }
     cli_segment_apply(&segment);

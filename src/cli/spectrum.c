@@ -167,7 +167,7 @@ static void print_table(const spectrum_work *w)
 {
     printf("vector  lambda          residual   F+ parts  F- parts  seam edges  seam length  passes\n");
     printf("%6d  %-14.8g  %8.2e\n", 0, w->spectrum->lambda[0], w->spectrum->residual[0]);
-    const double diagonal = sl_mesh_diagonal(w->mesh);
+    const double extent = sl_mesh_diagonal(w->mesh), diagonal = extent > 0.0 ? extent : 1.0;
     for (int32_t k = 1; k < w->spectrum->count; k++) {
         const sl_cut_candidate *c = &w->candidate[k - 1];
         printf("%6d  %-14.8g  %8.2e  %8d  %8d  %10d  %11.4f  %s\n", k, w->spectrum->lambda[k], w->spectrum->residual[k],
@@ -179,7 +179,7 @@ static void print_table(const spectrum_work *w)
 static void print_json(const spectrum_work *w)
 {
     json_t *list = json_array();
-    const double diagonal = sl_mesh_diagonal(w->mesh);
+    const double extent = sl_mesh_diagonal(w->mesh), diagonal = extent > 0.0 ? extent : 1.0;
     for (int32_t k = 0; k < w->spectrum->count; k++) {
         json_t *row = json_pack("{s:i, s:f, s:f}", "vector", k, "lambda", w->spectrum->lambda[k], "residual",
                                 w->spectrum->residual[k]);
@@ -201,15 +201,6 @@ static void print_json(const spectrum_work *w)
     json_decref(j);
 }
 
-static bool is_csv(const char *path)
-{
-    size_t n = 0;
-    while (path[n] != '\0') {
-        n++;
-    }
-    return n >= 4 && path[n - 4] == '.' && path[n - 3] == 'c' && path[n - 2] == 's' && path[n - 1] == 'v';
-}
-
 int cli_spectrum(int argc, char **argv)
 {
     spectrum_options o = {.run = {.verb = verb.name}, .vectors = 30};
@@ -222,7 +213,16 @@ int cli_spectrum(int argc, char **argv)
     };
     cli_common_options(&o.run, options + 3);
     int code = cli_parse(&verb, options, (int32_t)SL_COUNTOF(options), argc, argv, 2, files, &file_count);
-    if (code >= 0 || (code = cli_begin(&o.run)) >= 0) {
+    if (code >= 0) {
+        return code;
+    }
+    const bool csv = o.output != NULL && cli_has_extension(o.output, ".csv");
+    if (o.output != NULL && !csv && !cli_has_extension(o.output, ".ply")) {
+        fprintf(stderr, "seamlab spectrum: -o writes .ply or .csv, not %s\n", o.output);
+        return CLI_USAGE;
+    }
+    code = cli_begin(&o.run);
+    if (code >= 0) {
         return code;
     }
     spectrum_work work = {0};
@@ -232,8 +232,7 @@ int cli_spectrum(int argc, char **argv)
         code = cli_fail(&o.run, compute(&work, &o, &diag), &diag);
     }
     if (code == CLI_DONE && o.output != NULL) {
-        const sl_status status =
-            is_csv(o.output) ? write_csv(&work, o.output, &diag) : write_ply(&work, o.output, &diag);
+        const sl_status status = csv ? write_csv(&work, o.output, &diag) : write_ply(&work, o.output, &diag);
         code = cli_fail(&o.run, status, &diag);
     }
     if (code == CLI_DONE && o.run.json) {

@@ -134,7 +134,7 @@ static double worst_stretch(const sl_segmentation *seg)
 static void print_summary(unwrap_options *o, const sl_atlas *atlas)
 {
     const sl_segmentation *seg = atlas->segmentation;
-    const double seam = sl_atlas_seam_length(atlas->mesh) / sl_mesh_diagonal(atlas->mesh);
+    const double seam = sl_atlas_seam_diagonals(atlas->mesh);
     if (o->run.json) {
         json_t *j =
             json_pack("{s:i, s:s, s:i, s:f, s:f, s:f, s:b, s:i, s:I, s:i, s:i}", "schema", 1, "output", o->output,
@@ -167,10 +167,15 @@ static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *a
     if (sl_meshfile_losses(file, o->output, losses, sizeof losses)) {
         cli_note(&o->run, "note: the output's format does not hold %s", losses);
     }
-    int code = write_atlas(o, file, atlas);
-    if (code == CLI_DONE && o->preview != NULL) {
-        code = cli_preview(&o->run, o->preview, atlas);
+    cli_pictures pictures = {0};
+    int code = o->preview != NULL ? cli_pictures_draw(&o->run, atlas, &pictures) : CLI_DONE;
+    if (code == CLI_DONE) {
+        code = write_atlas(o, file, atlas);
     }
+    if (code == CLI_DONE && o->preview != NULL) {
+        code = cli_pictures_write(&o->run, o->preview, &pictures);
+    }
+    cli_pictures_clear(&pictures);
     if (code == CLI_DONE) {
         print_summary(o, atlas);
     }

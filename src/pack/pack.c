@@ -18,6 +18,7 @@ static const int32_t bisections = 14;
 static const double hopeful_fill = 0.95;
 
 static const double two_pi = 6.283185307179586;
+static const double root_two = 1.4142135623730951;
 
 /* A chart's place in the order of packing. */
 typedef struct pack_item {
@@ -194,10 +195,20 @@ static bool attempt(packer *p, double scale, sl_pack_info *info)
     return false;
 }
 
+/* No scale above this one can fit: all area must, and so must the longest chart along the page's diagonal. */
+static double highest_scale(const packer *p, double area)
+{
+    double high = area > 0.0 ? p->horizon.side * sqrt(hopeful_fill / area) : 1.0;
+    for (int32_t c = 0; area > 0.0 && c < p->count; c++) { /* needles: area alone is no bound to begin from */
+        high = p->extent[c] > 0.0 ? fmin(high, root_two * p->horizon.side / p->extent[c]) : high;
+    }
+    return high;
+}
+
 /* Largest scale that fits, by bisection over counted attempts. */
 static sl_status search_scale(packer *p, double area, const sl_context *context, sl_pack_info *info, double *scale)
 {
-    double high = area > 0.0 ? p->horizon.side * sqrt(hopeful_fill / area) : 1.0, low = 0.0;
+    double high = highest_scale(p, area), low = 0.0;
     double trial = high * 0.75;
     for (int32_t k = 0; k < 2 * bisections; k++) {
         const sl_status status = sl_report_progress(context, "packing", (double)k / (2 * bisections));
@@ -214,7 +225,7 @@ static sl_status search_scale(packer *p, double area, const sl_context *context,
         }
         trial = low > 0.0 ? 0.5 * (low + high) : 0.5 * high;
     }
-    if (low <= 0.0 && !attempt(p, 0.0, info)) { /* one point each and their margins */
+    if (low <= 0.0 && (area > 0.0 || !attempt(p, 0.0, info))) { /* without area: one point each and their margins */
         return SL_INFEASIBLE;
     }
     *scale = low;
@@ -234,7 +245,9 @@ sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def 
         area += p.area[c];
     }
     SL_TRY(search_scale(&p, area, context, info, &scale));
-    memcpy(placement, p.best_place, (size_t)count * sizeof *placement);
+    if (count > 0) {
+        memcpy(placement, p.best_place, (size_t)count * sizeof *placement);
+    }
     info->scale = scale / p.horizon.side;
     info->fill = area * info->scale * info->scale;
 cleanup:

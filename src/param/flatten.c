@@ -76,7 +76,7 @@ static int rank(sl_flatten_verdict verdict)
     return 0;
 }
 
-/* Judges c->map; `converged` is the method's own word. */
+/* Judges c->map, opened where that makes it an embedding; `converged` is the method's own word. */
 static sl_status judge(const chain *c, bool converged, sl_flatten_result *out)
 {
     const sl_patch *p = c->patch;
@@ -85,7 +85,7 @@ static sl_status judge(const chain *c, bool converged, sl_flatten_result *out)
         out->verdict = SL_CHART_NOT_CONVERGED;
         return SL_OK;
     }
-    SL_TRY(sl_certify_embedding(c->map, p->nt, p->tri, c->nb, c->border, &out->certificate));
+    SL_TRY(sl_flatten_certify(p, c->nb, c->border, c->map, &out->certificate));
     SL_TRY(sl_distortion_measure_indexed(p->nt, p->tri, p->xyz, c->map, &out->distortion));
     if (!converged) {
         out->verdict = SL_CHART_NOT_CONVERGED;

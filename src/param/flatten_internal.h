@@ -4,6 +4,7 @@
 #define SL_PARAM_FLATTEN_INTERNAL_H
 
 #include "mesh/patch.h"
+#include "overlap/certificate.h"
 
 /* True when every vertex is within a rounding-sized share (1e-12) of the patch's extent from one plane; uv (nv x 2) is
  * then the orthogonal projection along the patch's vector area, counter-clockwise where the patch is. False when the
@@ -16,5 +17,12 @@ bool sl_flatten_is_one_facet(const sl_patch *patch);
 /* Scales uv about the origin to the patch's 3D area; nothing is done where either area vanishes or the scale is 1 to
  * rounding. */
 void sl_flatten_scale(const sl_patch *patch, double *uv);
+
+/* sl_certify_embedding, and for a chart of one loop that meets itself along its border without turning over anywhere
+ * (the two banks of a cut through a flat ring, the faces of an unfolded box: rounding decides whether they touch or
+ * cross) a second try with its border moved inwards by 2^-13 of the shorter edge at each vertex. uv becomes the opened
+ * map where that one is embedded, and stays so when rounded to 2^-34 of its extent, and uv was not. */
+SL_NODISCARD sl_status sl_flatten_certify(const sl_patch *patch, int32_t nb, const int32_t *border, double *uv,
+                                          sl_certificate *out);
 
 #endif
