@@ -1,3 +1,4 @@
+/* Nested dissection of a graph without points: halves by breadth-first search. */
 #include "sparse/dissection.h"
 
 #include "base/memory.h"
@@ -6,7 +7,7 @@
 #include <string.h>
 
 /* Pieces this small are left to minimum degree: below, separators cost more fill than they save. */
-static const int32_t leaf_size = 160;
+static const int32_t leaf_size = 64;
 
 /* A separator above this share of its piece separates nothing worth having (dense or expander graphs). */
 static const double largest_separator = 0.25;
@@ -17,10 +18,9 @@ typedef struct range {
 
 typedef struct dissector {
     const sl_adjacency *graph;
-    const double *xyz; /* NULL = by breadth-first search */
-    int32_t *nodes;    /* the nodes, pieces contiguous, in order of elimination */
-    bool *begins;      /* a piece begins at this position */
-    int64_t *mark;     /* 2 stamp + side of the nodes in the range at hand */
+    int32_t *nodes; /* the nodes, pieces contiguous, in order of elimination */
+    bool *begins;   /* a piece begins at this position */
+    int64_t *mark;  /* 2 stamp + side of the nodes in the range at hand */
     int64_t stamp;
     int32_t *left, *right; /* nodes of the cut's two shores */
     int32_t *right_id;     /* where a node stands in right */
@@ -65,28 +65,6 @@ static void select_smallest(const dissector *d, int32_t *nodes, int32_t count, i
         } else {
             return;
         }
-    }
-}
-
-/* Keys are coordinates along the axis in which the nodes spread most. */
-static void key_by_widest_axis(dissector *d, const int32_t *nodes, int32_t count)
-{
-    int widest = 0;
-    double width = -1.0;
-    for (int axis = 0; axis < 3; axis++) {
-        double lo = d->xyz[3 * (int64_t)nodes[0] + axis], hi = lo;
-        for (int32_t k = 1; k < count; k++) {
-            const double x = d->xyz[3 * (int64_t)nodes[k] + axis];
-            lo = x < lo ? x : lo;
-            hi = x > hi ? x : hi;
-        }
-        if (hi - lo > width) {
-            width = hi - lo;
-            widest = axis;
-        }
-    }
-    for (int32_t k = 0; k < count; k++) {
-        d->key[nodes[k]] = d->xyz[3 * (int64_t)nodes[k] + widest];
     }
 }
 
@@ -196,11 +174,7 @@ static bool bisect(dissector *d, range r, int32_t *left_end, int32_t *right_end)
 {
     int32_t *nodes = d->nodes + r.begin;
     const int32_t count = r.end - r.begin, middle = count / 2;
-    if (d->xyz != NULL) {
-        key_by_widest_axis(d, nodes, count);
-    } else {
-        key_by_breadth_first(d, nodes, count);
-    }
+    key_by_breadth_first(d, nodes, count);
     select_smallest(d, nodes, count, middle);
     for (int32_t k = 0; k < count; k++) {
         d->mark[nodes[k]] = 2 * d->stamp + (k >= middle);
@@ -269,10 +243,10 @@ static void dissector_clear(dissector *d)
     sl_free(d->cut.right_in);
 }
 
-static sl_status dissector_init(dissector *d, const sl_adjacency *graph, const double *xyz)
+static sl_status dissector_init(dissector *d, const sl_adjacency *graph)
 {
     const int64_t n = graph->n;
-    *d = (dissector){.graph = graph, .xyz = xyz, .stamp = 1};
+    *d = (dissector){.graph = graph, .stamp = 1};
     d->nodes = sl_alloc(n, sizeof *d->nodes);
     d->begins = sl_calloc(n, sizeof *d->begins);
     d->mark = sl_calloc(n, sizeof *d->mark);
@@ -306,16 +280,17 @@ static sl_status dissector_init(dissector *d, const sl_adjacency *graph, const d
     return SL_OK;
 }
 
-sl_status sl_dissect_distinct(const sl_adjacency *graph, const double *xyz, int32_t *piece)
+sl_status sl_dissect_graph(const sl_adjacency *graph, int32_t *piece, int32_t *order)
 {
     dissector d;
     sl_status status = SL_OK;
-    SL_TRY(dissector_init(&d, graph, xyz));
+    SL_TRY(dissector_init(&d, graph));
     dissect_all(&d);
     int32_t pieces = 0;
     for (int32_t k = 0; k < graph->n; k++) {
         pieces += d.begins[k];
         piece[d.nodes[k]] = pieces - 1;
+        order[k] = d.nodes[k];
     }
 cleanup:
     dissector_clear(&d);

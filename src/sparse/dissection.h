@@ -15,12 +15,21 @@ typedef struct sl_adjacency {
 void sl_adjacency_clear(sl_adjacency *graph);
 
 /* piece[i] = which leaf or separator node i belongs to, numbered in order of elimination: what a separator separates
- * has smaller numbers than it, and different numbers on its two sides. xyz: n x 3 finite, or NULL for bisection by
- * breadth-first search; nodes at the same point share a piece. SL_OUT_OF_MEMORY. Deterministic. */
-SL_NODISCARD sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piece);
+ * has smaller numbers than it, and different numbers on its two sides. order: the nodes, piece by piece. xyz: n x 3
+ * finite, or NULL for bisection by breadth-first search; nodes at the same point share a piece. SL_OUT_OF_MEMORY.
+ * Deterministic. */
+SL_NODISCARD sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order);
 
 /* The same without looking for nodes that share a point. */
-SL_NODISCARD sl_status sl_dissect_distinct(const sl_adjacency *graph, const double *xyz, int32_t *piece);
+SL_NODISCARD sl_status sl_dissect_points(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order);
+
+/* The same without points. */
+SL_NODISCARD sl_status sl_dissect_graph(const sl_adjacency *graph, int32_t *piece, int32_t *order);
+
+/* Reorders the leaves within `order` by minimum degree, their separators counted. *complete = false when a leaf was too
+ * large for that and stays as it is. SL_OUT_OF_MEMORY. Source: George, Liu 1989 (degrees are exact, nodes without
+ * neighbours of their own go at once). */
+SL_NODISCARD sl_status sl_order_leaves(const sl_adjacency *graph, const int32_t *piece, int32_t *order, bool *complete);
 
 /* A bipartite graph and room for its matching. Left node l is joined to adj[first[l]] .. adj[first[l + 1] - 1]. */
 typedef struct sl_bipartite {

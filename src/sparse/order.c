@@ -4,6 +4,7 @@
 #include "sparse/dissection.h"
 
 #include <math.h>
+#include <string.h>
 #include <suitesparse/camd.h>
 
 /* Both triangles of A's pattern without the diagonal. */
@@ -78,8 +79,12 @@ static sl_status order_by_dissection(const sl_adjacency *graph, const double *xy
     int32_t *piece = sl_alloc(graph->n, sizeof *piece);
     sl_status status = piece != NULL ? SL_OK : SL_OUT_OF_MEMORY;
     SL_TRY(status);
-    SL_TRY(sl_dissect(graph, xyz, piece));
-    SL_TRY(order_by_camd(graph, piece, perm));
+    bool complete;
+    SL_TRY(sl_dissect(graph, xyz, piece, perm));
+    SL_TRY(sl_order_leaves(graph, piece, perm, &complete));
+    if (!complete) {
+        SL_TRY(order_by_camd(graph, piece, perm));
+    }
 cleanup:
     sl_free(piece);
     return status;
@@ -105,5 +110,31 @@ sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int
     SL_TRY(whole ? order_by_camd(&graph, NULL, perm) : order_by_dissection(&graph, xyz, perm));
 cleanup:
     sl_adjacency_clear(&graph);
+    return status;
+}
+
+sl_status sl_order_inherit(int32_t parent_n, const int32_t *parent_perm, int32_t count, const int32_t *subset,
+                           int32_t *perm)
+{
+    sl_status status = SL_OK;
+    int32_t placed = 0, *child = NULL; /* an unknown of the parent in the child's numbering, -1 = not in it */
+    SL_TRY(parent_n >= 0 && count >= 0 && count <= parent_n ? SL_OK : SL_BAD_INPUT);
+    child = sl_alloc(parent_n, sizeof *child);
+    SL_TRY(child != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    memset(child, -1, (size_t)parent_n * sizeof *child);
+    for (int32_t i = 0; i < count; i++) {
+        SL_TRY(subset[i] >= 0 && subset[i] < parent_n && child[subset[i]] == -1 ? SL_OK : SL_BAD_INPUT);
+        child[subset[i]] = i;
+    }
+    for (int32_t k = 0; k < parent_n; k++) {
+        SL_TRY(parent_perm[k] >= 0 && parent_perm[k] < parent_n ? SL_OK : SL_BAD_INPUT);
+        if (child[parent_perm[k]] != -1) {
+            perm[placed++] = child[parent_perm[k]];
+            child[parent_perm[k]] = -1; /* once */
+        }
+    }
+    SL_TRY(placed == count ? SL_OK : SL_BAD_INPUT);
+cleanup:
+    sl_free(child);
     return status;
 }

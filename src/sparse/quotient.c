@@ -3,53 +3,50 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-typedef struct placed {
-    double x[3];
-    int32_t node;
-} placed;
-
-static int compare_points(const placed *a, const placed *b)
+static bool same_point(const double *xyz, int32_t a, int32_t b)
 {
+    const double *p = xyz + 3 * (int64_t)a, *q = xyz + 3 * (int64_t)b;
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
+static uint64_t hash_point(const double *p)
+{
+    uint64_t hash = 0;
     for (int k = 0; k < 3; k++) {
-        if (a->x[k] != b->x[k]) {
-            return a->x[k] < b->x[k] ? -1 : 1;
-        }
+        const double x = p[k] + 0.0; /* both zeros are one */
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
     }
-    return 0;
+    return hash * 0xbf58476d1ce4e5b9u >> 20;
 }
 
-static int compare_placed(const void *va, const void *vb)
-{
-    const placed *a = va, *b = vb;
-    const int by_point = compare_points(a, b);
-    return by_point != 0 ? by_point : (a->node > b->node) - (a->node < b->node);
-}
-
-/* group[i] = which point node i is at, numbered by first node. Returns the number of points. SL_OUT_OF_MEMORY. */
+/* group[i] = which point node i is at, numbered by first node. SL_OUT_OF_MEMORY. */
 static sl_status group_by_point(int32_t n, const double *xyz, int32_t *group, int32_t *group_count)
 {
-    placed *sorted = sl_alloc(n, sizeof *sorted);
-    if (sorted == NULL) {
+    uint64_t slots = 4;
+    while (slots < 2 * (uint64_t)n) {
+        slots *= 2;
+    }
+    int32_t *first = sl_alloc((int64_t)slots, sizeof *first); /* hash table of the first node at each point */
+    if (first == NULL) {
         return SL_OUT_OF_MEMORY;
     }
-    for (int32_t i = 0; i < n; i++) {
-        sorted[i] = (placed){{xyz[3 * (int64_t)i], xyz[3 * (int64_t)i + 1], xyz[3 * (int64_t)i + 2]}, i};
-    }
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_placed);
-    /* First pass: every node points at the first node of its point; second: those first nodes are numbered. */
-    for (int32_t k = 0; k < n; k++) {
-        const bool same = k > 0 && compare_points(&sorted[k - 1], &sorted[k]) == 0;
-        group[sorted[k].node] = same ? group[sorted[k - 1].node] : sorted[k].node;
-    }
+    memset(first, -1, (size_t)slots * sizeof *first);
     int32_t count = 0;
     for (int32_t i = 0; i < n; i++) {
-        group[i] = group[i] == i ? count++ : group[group[i]];
+        uint64_t k = hash_point(xyz + 3 * (int64_t)i) & (slots - 1);
+        while (first[k] != -1 && !same_point(xyz, first[k], i)) { /* half the slots are free */
+            k = (k + 1) & (slots - 1);
+        }
+        group[i] = first[k] != -1 ? group[first[k]] : count++;
+        first[k] = first[k] != -1 ? first[k] : i;
     }
     *group_count = count;
-    sl_free(sorted);
+    sl_free(first);
     return SL_OK;
 }
 
@@ -101,18 +98,20 @@ static void place_groups(int32_t n, const double *xyz, const int32_t *group, dou
 }
 
 static sl_status dissect_groups(const sl_adjacency *graph, const double *xyz, const int32_t *group, int32_t groups,
-                                int32_t *piece)
+                                int32_t *piece, int32_t *order)
 {
     sl_adjacency Q = {.n = groups};
     const int64_t n = graph->n;
     int32_t *first = sl_calloc((int64_t)groups + 1, sizeof *first);
     int32_t *member = sl_alloc(n, sizeof *member);
     int32_t *mark = sl_alloc(groups, sizeof *mark);
+    int32_t *group_order = sl_alloc(groups, sizeof *group_order);
     double *points = sl_alloc(3 * (int64_t)groups, sizeof *points);
     sl_status status = SL_OK;
     Q.first = sl_alloc((int64_t)groups + 1, sizeof *Q.first);
     Q.adj = sl_alloc(graph->first[n], sizeof *Q.adj);
-    if (first == NULL || member == NULL || mark == NULL || points == NULL || Q.first == NULL || Q.adj == NULL) {
+    if (first == NULL || member == NULL || mark == NULL || group_order == NULL || points == NULL || Q.first == NULL ||
+        Q.adj == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -120,23 +119,28 @@ static sl_status dissect_groups(const sl_adjacency *graph, const double *xyz, co
     fill_quotient(graph, group, first, member, mark, &Q);
     place_groups(graph->n, xyz, group, points);
     int32_t *group_piece = mark; /* done with as a marker */
-    SL_TRY(sl_dissect_distinct(&Q, points, group_piece));
-    for (int32_t i = 0; i < graph->n; i++) {
-        piece[i] = group_piece[group[i]];
+    SL_TRY(sl_dissect_points(&Q, points, group_piece, group_order));
+    int32_t placed = 0;
+    for (int32_t g = 0; g < groups; g++) {
+        for (int32_t k = first[group_order[g]]; k < first[group_order[g] + 1]; k++) {
+            piece[member[k]] = group_piece[group_order[g]];
+            order[placed++] = member[k];
+        }
     }
 cleanup:
     sl_free(first);
     sl_free(member);
     sl_free(mark);
+    sl_free(group_order);
     sl_free(points);
     sl_adjacency_clear(&Q);
     return status;
 }
 
-sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piece)
+sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order)
 {
     if (xyz == NULL) {
-        return sl_dissect_distinct(graph, NULL, piece);
+        return sl_dissect_graph(graph, piece, order);
     }
     int32_t groups = 0;
     int32_t *group = sl_alloc(graph->n, sizeof *group);
@@ -144,9 +148,9 @@ sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piec
     SL_TRY(status);
     SL_TRY(group_by_point(graph->n, xyz, group, &groups));
     if (groups == graph->n) {
-        SL_TRY(sl_dissect_distinct(graph, xyz, piece));
+        SL_TRY(sl_dissect_points(graph, xyz, piece, order));
     } else {
-        SL_TRY(dissect_groups(graph, xyz, group, groups, piece));
+        SL_TRY(dissect_groups(graph, xyz, group, groups, piece, order));
     }
 cleanup:
     sl_free(group);

@@ -115,7 +115,11 @@ static void check_top_separator(const grid *g, const double *xyz, double widest)
     int32_t *piece = sl_alloc(g->n, sizeof *piece), *queue = sl_alloc(g->n, sizeof *queue);
     bool *seen = sl_calloc(g->n, sizeof *seen);
     assert_true(piece && queue && seen);
-    assert_int_equal(sl_dissect(&g->graph, xyz, piece), SL_OK);
+    assert_int_equal(sl_dissect(&g->graph, xyz, piece, queue), SL_OK);
+    assert_permutation(queue, g->n);
+    for (int32_t k = 1; k < g->n; k++) {
+        assert_in_range(piece[queue[k]] - piece[queue[k - 1]], 0, 1);
+    }
     int32_t last = 0, size = 0;
     for (int32_t i = 0; i < g->n; i++) {
         last = piece[i] > last ? piece[i] : last;
