@@ -20,15 +20,15 @@ rows(name) = sprintf("< awk -F, 'NR > 1 && $%d == \"%s\" %s && (\"%s\" == \"\" |
                      solver, name, mode_filter, mesh, mesh, csv)
 names = system(sprintf("awk -F, 'NR > 1 && !seen[$%d]++ { print $%d }' %s", solver, solver, csv))
 
-set terminal svg size 760,520 dynamic font "sans-serif,14" background "none"
+set terminal svg size 900,480 dynamic font "sans-serif,14"
 grey = "#808080"
 set border 3 lc rgb grey
 set tics textcolor rgb grey nomirror
-set key top left textcolor rgb grey
+set key outside right top Left reverse textcolor rgb grey
 set grid lc rgb grey lw 0.3
 set logscale xy
 set xlabel "facets" textcolor rgb grey
-set format x "10^{%T}"
+set format x "%.0s%c"
 array colours[8] = ["#e8702a", "#3f8fd2", "#4aa564", "#a06cd5", "#c9a227", "#d6558c", "#2fa7a0", "#9a7b5f"]
 colour(i) = i == 1 ? colours[1] : colours[2 + (i - 2) % 7]
 width(name) = strstrt(name, "ours") == 1 ? 3 : 1.2
