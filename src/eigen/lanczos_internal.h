@@ -1,90 +1,96 @@
-/* The state of the block Lanczos solver and its parts; internal to the room.
+/* The state of the eigensolver and its stages; internal to the room.
  * Layer: eigen. */
 #ifndef SL_EIGEN_LANCZOS_INTERNAL_H
 #define SL_EIGEN_LANCZOS_INTERNAL_H
 
-#include "base/rng.h"
+#include "eigen/krylov.h"
 #include "eigen/lanczos.h"
 
-#include <lapacke.h>
+/* What the next step does. */
+typedef enum sl_stage {
+    SL_STAGE_SKELETON, /* Krylov space of the separators, interiors recovered, first inverse iteration */
+    SL_STAGE_KRYLOV,   /* one filling of the basis */
+    SL_STAGE_ITERATE,  /* one block inverse iteration */
+    SL_STAGE_CERTIFY,  /* count the eigenvalues below the last one found */
+    SL_STAGE_DONE
+} sl_stage;
 
-/* The widest block. */
-#define SL_LANCZOS_MAX_BLOCK 32
-
-/* OP = inv(M), M = A - sigma I. The basis Q has orthonormal columns: the null space first, then `size` columns OP has
- * been applied to, then the block it is applied to next. On those `size` columns V, with W the next block, OP V = V T +
- * W R E'   (E = the last `block` unit vectors) up to the null space, which OP maps to itself. */
+/* All vectors are in the factor's order of elimination. X holds the computed pairs, guards behind the wanted ones. */
 struct sl_lanczos {
+    sl_lanczos_def def;
     int32_t n;
     int32_t count;      /* pairs delivered: null_count + wanted */
-    int32_t null_count; /* columns of the null space in Q, already clipped to count */
+    int32_t null_count; /* clipped to count */
     int32_t wanted;     /* pairs to compute */
+    int32_t needed;     /* pairs that must converge: wanted, and the rest of a cluster it ends in */
+    int32_t columns;    /* of X: wanted and guards */
     int32_t block, max_basis;
-    double tolerance, norm, sigma;
+    double norm, sigma;
     const sl_csc *A;           /* borrowed */
     const sl_context *context; /* borrowed */
-    sl_rng rng;
     sl_cholesky *factor;
+    int32_t *perm; /* its permutation */
+    sl_rows rows;  /* A in the factor's order */
     double *solve_work;
-    double *Q; /* n x (null_count + max_basis + block) */
-    int32_t size;
-    double *T;     /* max_basis x max_basis, leading dimension max_basis */
-    double *R;     /* block x block, upper triangular */
-    double *S;     /* size x size eigenvectors of T, leading dimension size, by descending theta */
-    double *theta; /* max_basis, descending */
-    double *H;     /* projections: (null_count + max_basis + block) x block, twice */
-    double *Z;     /* n x block */
-    double *chunk; /* rows of the basis while it is rotated in place */
-    double *G;     /* wanted x wanted, and block x block before */
-    double *lapack;
-    lapack_int *lapack_int;
-    bool verifying;        /* hunting for missed copies */
-    int32_t verify_left;   /* block steps until the hunt is over */
-    double *verify_lambda; /* wanted: the values before the hunt */
-    bool finished;
-    double *X;                 /* n x count: the pairs found */
-    double *lambda, *residual; /* count */
+    sl_panels N; /* null space */
+    sl_panels X;
+    bool have_pairs;
+    double *lambda, *residual; /* columns: of X; residuals are not divided by ||A||_1 */
+    sl_krylov krylov;          /* plain start only; empty otherwise */
+    bool krylov_live, krylov_tried;
+    double *partial, *H;   /* of projections on the null space */
+    double previous_worst; /* of the residuals over their bounds, one iteration ago; 0 = none */
+    bool extended;         /* guards were let converge for a count once */
+    bool widest;           /* no larger block fits the space: LAPACK takes over */
+    sl_stage stage;
+    double *dense_X, *dense_lambda, *dense_residual; /* dense only: n x count, unknowns as in A */
     sl_lanczos_info info;
 };
 
-/* basis.c: column k of V, or of the block after it. */
-double *sl_lanczos_column(const sl_lanczos *s, int32_t k);
+/* sizes.c: block, basis, guards, start and patch. *dense: the basis would not fit the space. */
+void sl_lanczos_choose_sizes(sl_lanczos *s, bool *dense);
 
-/* Fills the block after V with random unit vectors orthogonal to all before them. */
-void sl_lanczos_random_block(sl_lanczos *s);
+/* Columns of the basis for s->block; false when it would not fit the space. */
+bool sl_lanczos_choose_basis(sl_lanczos *s);
 
-/* One block step: T, R and the next block; size grows by one block. */
-void sl_lanczos_expand(sl_lanczos *s);
+/* Bytes the solver will hold at its peak. factor: after its analysis. */
+int64_t sl_lanczos_estimate(const sl_lanczos *s, bool dense);
 
-/* V (n x columns) = V S for its first `kept` columns; S: columns x kept, leading dimension columns. */
-void sl_lanczos_rotate(sl_lanczos *s, double *V, int32_t columns, const double *S, int32_t kept);
+/* skeleton.c: fills X. *usable = false when the condensed mass is not positive or the Krylov space does not converge:
+ * X is then unchanged. */
+SL_NODISCARD sl_status sl_lanczos_skeleton(sl_lanczos *s, bool *usable);
 
-/* Doubles of s->chunk. */
-int64_t sl_lanczos_rotation_work(const sl_lanczos *s);
+/* plain.c: one filling of the basis of the whole matrix; goes on to the next stage when enough pairs converge. */
+SL_NODISCARD sl_status sl_lanczos_fill(sl_lanczos *s);
 
-/* ritz.c: theta and S from T. SL_INTERNAL when LAPACK fails. */
-SL_NODISCARD sl_status sl_lanczos_ritz(sl_lanczos *s);
+/* Starts (again) with a random block. */
+SL_NODISCARD sl_status sl_lanczos_begin_plain(sl_lanczos *s);
 
-/* The eigenvalue of A that belongs to an eigenvalue of OP. */
-double sl_lanczos_lambda(const sl_lanczos *s, double theta);
+/* iterate.c: X := OP X, Rayleigh-Ritz with A, residuals. Panels of X whose pairs all have converged are left alone. */
+SL_NODISCARD sl_status sl_lanczos_iterate(sl_lanczos *s);
 
-/* How many of the wanted Ritz pairs meet the tolerance, from T, R and the next block alone. */
-int32_t sl_lanczos_count_converged(sl_lanczos *s);
+/* Rayleigh-Ritz of X with A and residuals; what any way of filling X ends with. */
+SL_NODISCARD sl_status sl_lanczos_rayleigh_ritz(sl_lanczos *s);
 
-/* Replaces V by its `kept` leading Ritz vectors (after sl_lanczos_ritz); the next block follows them. */
-void sl_lanczos_restart(sl_lanczos *s, int32_t kept);
+/* Largest residual of the pairs needed, over what the mode allows it: at most 1 when all have converged. */
+double sl_lanczos_worst(const sl_lanczos *s);
 
-/* X, lambda, residual and what info says of them from the first `wanted` columns of V, by a Rayleigh-Ritz step with A.
- */
-SL_NODISCARD sl_status sl_lanczos_extract(sl_lanczos *s);
+/* What the mode allows the residual of a pair. */
+double sl_lanczos_bound(const sl_lanczos *s, double lambda);
 
-/* One inverse iteration of X, orthonormalised, and a Rayleigh-Ritz step with A. */
-SL_NODISCARD sl_status sl_lanczos_polish(sl_lanczos *s);
+/* W := inv(A - sigma I) W, orthogonal to the null space before and after. */
+void sl_lanczos_apply(sl_lanczos *s, double *W, int32_t w);
 
-/* dense.c: all pairs through LAPACKE, X, lambda, residual and info filled. */
+/* certify.c: decides the next stage: done, or more pairs, or a larger block. */
+SL_NODISCARD sl_status sl_lanczos_certify(sl_lanczos *s);
+
+/* dense.c: all pairs through LAPACKE, results and info filled. */
 SL_NODISCARD sl_status sl_lanczos_solve_dense(sl_lanczos *s);
 
-/* Residuals of X, the sign rule and info's summary; what any way of filling X and lambda ends with. */
-void sl_lanczos_finish_pairs(sl_lanczos *s);
+/* result.c: info's summary of the pairs at hand. */
+void sl_lanczos_summarise(sl_lanczos *s);
+
+/* Makes the entry of largest magnitude positive. */
+void sl_lanczos_sign_rule(int32_t n, double *x);
 
 #endif

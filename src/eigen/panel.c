@@ -1,0 +1,284 @@
+#include "eigen/panel.h"
+
+#include "base/memory.h"
+#include "eigen/kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rows a kernel is called with: eight lanes of them stay in the first cache. */
+static const int64_t tile_rows = 256;
+
+/* Rows of a chunk are a multiple of the tile, and there are at most so many chunks: their partial sums are added up in
+ * order. */
+enum { MAX_CHUNKS = 64 };
+
+static const size_t cache_line = 64;
+
+static int64_t chunk_rows(int64_t rows)
+{
+    const int64_t share = (rows + MAX_CHUNKS - 1) / MAX_CHUNKS, least = 16 * tile_rows;
+    return share <= least ? least : (share + tile_rows - 1) / tile_rows * tile_rows;
+}
+
+static int64_t smaller(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+int64_t sl_panels_bytes(int64_t rows, int64_t columns)
+{
+    return (columns + SL_PANEL - 1) / SL_PANEL * SL_PANEL * rows * (int64_t)sizeof(double) + (int64_t)cache_line;
+}
+
+sl_status sl_panels_create(int32_t rows, int32_t columns, sl_panels *out)
+{
+    *out = (sl_panels){.rows = rows, .columns = columns};
+    out->memory = sl_calloc(sl_panels_bytes(rows, columns), 1);
+    if (out->memory == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    const uintptr_t skip = (uintptr_t)out->memory % cache_line;
+    out->data = (double *)((char *)out->memory + (skip == 0 ? 0 : cache_line - skip));
+    return SL_OK;
+}
+
+void sl_panels_clear(sl_panels *panels)
+{
+    sl_free(panels->memory);
+    *panels = (sl_panels){.rows = 0};
+}
+
+sl_status sl_panels_take(sl_panels *from, int32_t columns, sl_panels *to)
+{
+    const ptrdiff_t skip = (char *)from->data - (char *)from->memory;
+    void *memory = sl_realloc(from->memory, sl_panels_bytes(from->rows, columns), 1);
+    *to = (sl_panels){.rows = 0};
+    if (memory == NULL) {
+        sl_panels_clear(from);
+        return SL_OUT_OF_MEMORY;
+    }
+    *to = (sl_panels){from->rows, columns, memory, (double *)(void *)((char *)memory + skip)};
+    *from = (sl_panels){.rows = 0};
+    return SL_OK;
+}
+
+int64_t sl_panels_partial_size(int64_t rows, int32_t columns)
+{
+    const int32_t wide = sl_panel_count(columns) + 1;
+    return 2 * sl_chunk_count(rows, chunk_rows(rows)) * (int64_t)wide * SL_PANEL * SL_PANEL;
+}
+
+/* What the sweeps over chunks share. */
+typedef struct sweep {
+    const sl_panels *M;
+    int32_t panels, w;
+    double *W[2];
+    const double *H[2];
+    double *partial;
+    int64_t stride; /* of partial from chunk to chunk */
+} sweep;
+
+/* sum = the chunks' partial sums, `size` of them from `at` on. */
+static void add_partials(const sweep *s, int64_t rows, int64_t at, int64_t size, double *sum)
+{
+    const int32_t chunks = sl_chunk_count(rows, chunk_rows(rows));
+    memset(sum, 0, (size_t)size * sizeof *sum);
+    for (int32_t c = 0; c < chunks; c++) {
+        for (int64_t i = 0; i < size; i++) {
+            sum[i] += s->partial[c * s->stride + at + i];
+        }
+    }
+}
+
+static void project_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    const sweep *s = user;
+    const int64_t block = (int64_t)SL_PANEL * s->w, half = s->panels * block;
+    double *H = s->partial + chunk * s->stride;
+    memset(H, 0, (size_t)s->stride * sizeof *H);
+    for (int64_t r = begin; r < end; r += tile_rows) {
+        const int64_t rows = smaller(tile_rows, end - r);
+        for (int32_t p = 0; p < s->panels; p++) {
+            const double *P = sl_panel_at(s->M, p) + r * SL_PANEL;
+            sl_kernel_gram(P, s->W[0] + r * s->w, rows, s->w, H + p * block);
+            if (s->W[1] != NULL) {
+                sl_kernel_gram(P, s->W[1] + r * s->w, rows, s->w, H + half + p * block);
+            }
+        }
+    }
+}
+
+void sl_panels_project(const sl_panels *M, int32_t columns, const sl_panel_pair *pair, double *partial,
+                       const sl_context *context)
+{
+    const int32_t panels = sl_panel_count(columns), blocks = pair->W[1] != NULL ? 2 : 1;
+    const int64_t half = (int64_t)panels * SL_PANEL * pair->w, used = (int64_t)columns * pair->w;
+    sweep s = {.M = M, .panels = panels, .w = pair->w, .partial = partial, .stride = blocks * half};
+    s.W[0] = pair->W[0];
+    s.W[1] = pair->W[1];
+    sl_parallel_for(context, M->rows, chunk_rows(M->rows), project_chunk, &s);
+    for (int32_t k = 0; k < blocks; k++) {
+        add_partials(&s, M->rows, k * half, half, pair->H[k]);
+        memset(pair->H[k] + used, 0, (size_t)(half - used) * sizeof *pair->H[k]);
+    }
+}
+
+static void subtract_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    const sweep *s = user;
+    const int64_t block = (int64_t)SL_PANEL * s->w;
+    double *G = s->partial + chunk * s->stride;
+    memset(G, 0, (size_t)s->stride * sizeof *G);
+    for (int64_t r = begin; r < end; r += tile_rows) {
+        const int64_t rows = smaller(tile_rows, end - r);
+        for (int32_t p = 0; p < s->panels; p++) {
+            const double *P = sl_panel_at(s->M, p) + r * SL_PANEL;
+            sl_kernel_add(P, s->H[0] + p * block, rows, s->w, s->W[0] + r * s->w);
+            if (s->W[1] != NULL) {
+                sl_kernel_add(P, s->H[1] + p * block, rows, s->w, s->W[1] + r * s->w);
+            }
+        }
+        sl_kernel_self(s->W[0] + r * s->w, rows, s->w, G);
+    }
+}
+
+static void negate(double *x, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++) {
+        x[i] = -x[i];
+    }
+}
+
+void sl_panels_subtract(const sl_panels *M, int32_t columns, const sl_panel_pair *pair, double *partial, double *G,
+                        const sl_context *context)
+{
+    const int32_t panels = sl_panel_count(columns), blocks = pair->W[1] != NULL ? 2 : 1;
+    const int64_t half = (int64_t)panels * SL_PANEL * pair->w;
+    sweep s = {.M = M, .panels = panels, .w = pair->w, .partial = partial, .stride = (int64_t)pair->w * pair->w};
+    for (int32_t k = 0; k < blocks; k++) {
+        s.W[k] = pair->W[k];
+        s.H[k] = pair->H[k];
+        negate(pair->H[k], half);
+    }
+    sl_parallel_for(context, M->rows, chunk_rows(M->rows), subtract_chunk, &s);
+    add_partials(&s, M->rows, 0, s.stride, G);
+    for (int32_t k = 0; k < blocks; k++) {
+        negate(pair->H[k], half);
+    }
+}
+
+static void divide_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    const sweep *s = user;
+    double *G = s->partial + chunk * s->stride;
+    memset(G, 0, (size_t)s->stride * sizeof *G);
+    for (int64_t r = begin; r < end; r += tile_rows) {
+        const int64_t rows = smaller(tile_rows, end - r);
+        sl_kernel_triangle(s->H[0], rows, s->w, s->W[0] + r * s->w);
+        sl_kernel_self(s->W[0] + r * s->w, rows, s->w, G);
+    }
+}
+
+/* U = inv(R), w x w upper triangular, row by row. */
+static void invert_triangle(const double *R, int32_t w, double *U)
+{
+    memset(U, 0, (size_t)(w * w) * sizeof *U);
+    for (int32_t j = 0; j < w; j++) {
+        U[j * w + j] = 1.0 / R[j * w + j];
+        for (int32_t i = j - 1; i >= 0; i--) {
+            double sum = 0.0;
+            for (int32_t k = i + 1; k <= j; k++) {
+                sum += R[i * w + k] * U[k * w + j];
+            }
+            U[i * w + j] = -sum / R[i * w + i];
+        }
+    }
+}
+
+void sl_panels_divide(int32_t rows, double *W, int32_t w, const double *R, double *partial, double *G,
+                      const sl_context *context)
+{
+    double U[SL_PANEL * SL_PANEL];
+    invert_triangle(R, w, U);
+    sweep s = {.w = w, .partial = partial, .stride = (int64_t)w * w};
+    s.W[0] = W;
+    s.H[0] = U;
+    sl_parallel_for(context, rows, chunk_rows(rows), divide_chunk, &s);
+    add_partials(&s, rows, 0, s.stride, G);
+}
+
+void sl_panels_store(sl_panels *M, int32_t at, const double *W, int32_t w)
+{
+    for (int32_t c = 0; c < w; c++) {
+        double *to = sl_panel_at(M, (at + c) / SL_PANEL) + (at + c) % SL_PANEL;
+        for (int64_t r = 0; r < M->rows; r++) {
+            to[r * SL_PANEL] = W[r * w + c];
+        }
+    }
+}
+
+void sl_panels_load(const sl_panels *M, int32_t at, double *W, int32_t w)
+{
+    for (int32_t c = 0; c < w; c++) {
+        const double *from = sl_panel_at(M, (at + c) / SL_PANEL) + (at + c) % SL_PANEL;
+        for (int64_t r = 0; r < M->rows; r++) {
+            W[r * w + c] = from[r * SL_PANEL];
+        }
+    }
+}
+
+/* Rotation in place: a tile of all panels is set aside and comes back multiplied. */
+typedef struct rotation {
+    const sl_panels *M;
+    sl_panels *to;
+    int32_t panels, kept_panels;
+    const double *blocks; /* panels x kept_panels blocks of 8 x 8 */
+    double *tiles;        /* one for each chunk */
+} rotation;
+
+static void rotate_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    const rotation *t = user;
+    const int64_t tile = tile_rows * SL_PANEL, block = SL_PANEL * SL_PANEL;
+    double *copy = t->tiles + chunk * tile * t->panels;
+    for (int64_t r = begin; r < end; r += tile_rows) {
+        const int64_t rows = smaller(tile_rows, end - r);
+        const size_t bytes = (size_t)(rows * SL_PANEL) * sizeof *copy;
+        for (int32_t p = 0; p < t->panels; p++) {
+            memcpy(copy + p * tile, sl_panel_at(t->M, p) + r * SL_PANEL, bytes);
+        }
+        for (int32_t q = 0; q < t->kept_panels; q++) {
+            double *out = sl_panel_at(t->to, q) + r * SL_PANEL;
+            memset(out, 0, bytes);
+            for (int32_t p = 0; p < t->panels; p++) {
+                sl_kernel_add(copy + p * tile, t->blocks + ((int64_t)p * t->kept_panels + q) * block, rows, SL_PANEL,
+                              out);
+            }
+        }
+    }
+}
+
+sl_status sl_panels_rotate(sl_panels *M, int32_t columns, const double *C, int32_t kept, sl_panels *to,
+                           const sl_context *context)
+{
+    const int32_t panels = sl_panel_count(columns), kept_panels = sl_panel_count(kept);
+    const int32_t chunks = sl_chunk_count(M->rows, chunk_rows(M->rows));
+    double *blocks = sl_calloc((int64_t)panels * kept_panels, SL_PANEL * SL_PANEL * sizeof *blocks);
+    double *tiles = sl_alloc((int64_t)chunks * panels * tile_rows * SL_PANEL, sizeof *tiles);
+    sl_status status = SL_OUT_OF_MEMORY;
+    if (blocks != NULL && tiles != NULL) {
+        for (int32_t i = 0; i < columns; i++) {
+            for (int32_t k = 0; k < kept; k++) {
+                blocks[(((int64_t)(i / SL_PANEL) * kept_panels + k / SL_PANEL) * SL_PANEL + i % SL_PANEL) * SL_PANEL +
+                       k % SL_PANEL] = C[(int64_t)k * columns + i];
+            }
+        }
+        rotation t = {M, to != NULL ? to : M, panels, kept_panels, blocks, tiles};
+        sl_parallel_for(context, M->rows, chunk_rows(M->rows), rotate_chunk, &t);
+        status = SL_OK;
+    }
+    sl_free(blocks);
+    sl_free(tiles);
+    return status;
+}

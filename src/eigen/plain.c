@@ -1,0 +1,133 @@
+/* Block Lanczos on the whole matrix. */
+#include "base/memory.h"
+#include "eigen/lanczos_internal.h"
+
+#include <math.h>
+
+/* Estimates stop at this share of the bound: recomputed residuals then meet it with room for rounding. */
+static const double stop_share = 0.5;
+
+/* The basis is looked at again once so much of the way that is left, by the pace so far, lies behind. */
+static const double look_share = 0.8;
+
+static void apply_inverse(void *user, double *W, int32_t w)
+{
+    sl_lanczos_apply(user, W, w);
+}
+
+sl_status sl_lanczos_begin_plain(sl_lanczos *s)
+{
+    sl_status status = SL_OK;
+    sl_krylov_clear(&s->krylov);
+    s->krylov_live = false;
+    SL_TRY(sl_krylov_init(s->n, s->null_count, s->block, s->max_basis, s->def.seed, s->context, &s->krylov));
+    for (int32_t p = 0; p < sl_panel_count(s->null_count); p++) { /* the null space starts the basis: same panels */
+        const double *from = sl_panel_at(&s->N, p);
+        double *to = sl_panel_at(&s->krylov.Q, p);
+        for (int64_t i = 0; i < (int64_t)s->n * SL_PANEL; i++) {
+            to[i] = from[i];
+        }
+    }
+    s->krylov.apply = apply_inverse;
+    s->krylov.user = s;
+    sl_krylov_random(&s->krylov);
+    s->krylov_live = true;
+cleanup:
+    if (status != SL_OK) {
+        sl_krylov_clear(&s->krylov);
+    }
+    return status;
+}
+
+/* Largest estimated residual over its bound. For OP x = theta x + P y the vector OP x / theta, which is what is
+ * delivered, has A v - lambda v = -P y / theta^2. */
+static double estimate_worst(const sl_lanczos *s)
+{
+    const sl_krylov *b = &s->krylov;
+    double worst = 0.0;
+    for (int32_t j = 0; j < s->wanted; j++) {
+        if (j >= b->found || !(b->theta[j] > 0.0)) {
+            return INFINITY;
+        }
+        const double lambda = s->sigma + 1.0 / b->theta[j];
+        const double residual = b->last[j] / (b->theta[j] * b->theta[j]);
+        worst = fmax(worst, residual / (stop_share * sl_lanczos_bound(s, fmax(lambda, 0.0))));
+    }
+    return worst;
+}
+
+/* Columns at which to look again, by how fast the logarithm of the worst residual fell since the last look. */
+static int32_t next_look(int32_t before, double worst_before, int32_t now, double worst)
+{
+    if (before == 0 || !isfinite(worst_before) || !(worst < worst_before)) {
+        return now;
+    }
+    const double pace = log(worst_before / worst) / (now - before);
+    const double left = look_share * log(worst) / pace;
+    return left < 1e6 ? now + (int32_t)left : now;
+}
+
+/* X := the leading Ritz vectors. The basis makes way for them, or stays for more. */
+static sl_status take_vectors(sl_lanczos *s, bool basis_stays)
+{
+    sl_status status = SL_OK;
+    SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, basis_stays ? &s->X : NULL));
+    if (!basis_stays) {
+        sl_panels_clear(&s->X);
+        SL_TRY(sl_panels_take(&s->krylov.Q, s->columns, &s->X));
+        sl_krylov_clear(&s->krylov);
+        s->krylov_live = false;
+    }
+    SL_TRY(sl_lanczos_rayleigh_ritz(s));
+cleanup:
+    return status;
+}
+
+static sl_status restart(sl_lanczos *s)
+{
+    sl_krylov *b = &s->krylov;
+    sl_status status = SL_OK;
+    const int32_t beyond = s->wanted / 2 > s->block ? s->wanted / 2 : s->block;
+    int32_t kept = s->wanted + beyond;
+    kept = kept < s->max_basis - 2 * s->block ? kept : s->max_basis - 2 * s->block;
+    SL_TRY(sl_krylov_ritz(b, kept > s->columns ? kept : s->columns));
+    if (s->X.data == NULL) {
+        SL_TRY(sl_panels_create(s->n, s->columns, &s->X));
+    }
+    SL_TRY(take_vectors(s, true));
+    SL_TRY(sl_krylov_restart(b, kept < b->found ? kept : b->found));
+    s->info.restarts++;
+cleanup:
+    return status;
+}
+
+sl_status sl_lanczos_fill(sl_lanczos *s)
+{
+    sl_krylov *b = &s->krylov;
+    sl_status status = SL_OK;
+    int32_t look = 2 * s->wanted + 4 * s->block, before = 0;
+    double worst = INFINITY;
+    if (!s->krylov_live) {
+        SL_TRY(sl_lanczos_begin_plain(s));
+    }
+    look = look < s->columns + s->block ? s->columns + s->block : look;
+    while (worst > 1.0 && b->applied + b->w <= b->max_basis) {
+        SL_TRY(sl_report_progress(s->context, "eigenvectors", (double)b->applied / b->max_basis));
+        sl_krylov_expand(b);
+        if (b->applied >= look || b->applied + b->w > b->max_basis) {
+            const double last = worst;
+            SL_TRY(sl_krylov_ritz(b, s->columns));
+            worst = estimate_worst(s);
+            look = next_look(before, last, b->applied, worst);
+            before = b->applied;
+        }
+    }
+    if (worst > 1.0) {
+        SL_TRY(restart(s));
+    } else {
+        SL_TRY(take_vectors(s, false));
+        s->stage = sl_lanczos_worst(s) <= 1.0 ? SL_STAGE_CERTIFY : SL_STAGE_ITERATE;
+    }
+cleanup:
+    return status;
+}

@@ -1,0 +1,102 @@
+/* How wide, how many, from where: chosen from the size of the problem and what is asked of it. */
+#include "eigen/lanczos_internal.h"
+
+#include <math.h>
+
+/* Matrices up to this order are LAPACK's. */
+static const int32_t dense_order = 200;
+
+/* From this order on a solve is bound by reading L, which eight sides share; below, the fewer vectors of narrow blocks
+ * win. */
+static const int32_t wide_block_order = 100000;
+
+/* The skeleton pays from these orders on. */
+static const int32_t skeleton_order_signs = 20000;
+static const int32_t skeleton_order_tolerance = 200000;
+
+/* lambda_k of a surface's facet graph is about this times k / n (Weyl's law; measured on closed surfaces). */
+static const double weyl_slope = 6.5;
+
+/* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(5/4) in vectors
+ * of eigenvalue lambda after one inverse iteration. */
+static const double skeleton_error = 1.1e-3, skeleton_reach = 0.18, skeleton_power = 1.25;
+
+enum { LEAST_PATCH = 64, MOST_PATCH = 2048 };
+
+static int32_t round_up(int32_t value, int32_t step)
+{
+    return (value + step - 1) / step * step;
+}
+
+static int32_t choose_block(const sl_lanczos *s)
+{
+    if (s->def.block == 0) {
+        return s->n < wide_block_order ? 4 : 8;
+    }
+    return s->def.block <= 4 ? 4 : s->def.block < SL_KRYLOV_MAX_BLOCK ? round_up(s->def.block, 8) : SL_KRYLOV_MAX_BLOCK;
+}
+
+/* The largest patch whose error one inverse iteration brings below what the mode allows. */
+static int32_t choose_patch(const sl_lanczos *s)
+{
+    const double lambda = weyl_slope * s->count / s->n;
+    const double allowed =
+        s->def.mode == SL_LANCZOS_SIGNS ? s->def.sign_tolerance : s->def.tolerance * s->norm / lambda;
+    const double patch =
+        skeleton_reach / lambda * pow(0.5 * fmin(allowed, 1e-2) / skeleton_error, 1.0 / skeleton_power);
+    return (int32_t)fmax(LEAST_PATCH, fmin(MOST_PATCH, patch));
+}
+
+static bool choose_skeleton(const sl_lanczos *s)
+{
+    const int32_t least = s->def.mode == SL_LANCZOS_SIGNS ? skeleton_order_signs : skeleton_order_tolerance;
+    const bool start = s->def.start == SL_START_SKELETON || (s->def.start == SL_START_AUTO && s->n >= least);
+    return start && s->wanted > 0 && s->n > 20 * (int64_t)s->columns;
+}
+
+bool sl_lanczos_choose_basis(sl_lanczos *s)
+{
+    const int32_t least = s->wanted + 4 * s->block;
+    int32_t basis = s->def.max_basis > 0 ? s->def.max_basis : 4 * s->wanted + 8 * s->block;
+    basis = round_up(basis > least ? basis : least, SL_PANEL);
+    const bool fits = (int64_t)s->null_count + basis + 2 * (int64_t)s->block + SL_PANEL <= s->n;
+    s->max_basis = fits ? basis : 0;
+    s->info.block = fits ? s->block : 0;
+    return fits;
+}
+
+void sl_lanczos_choose_sizes(sl_lanczos *s, bool *dense)
+{
+    s->wanted = s->needed = s->count - s->null_count;
+    s->block = choose_block(s);
+    *dense = s->n <= dense_order || !sl_lanczos_choose_basis(s);
+    s->columns = round_up(s->wanted + 3, SL_PANEL);
+    const bool skeleton = !*dense && choose_skeleton(s);
+    if (skeleton) { /* guards damp the error of the last pairs wanted: measured, a quarter more is enough */
+        s->columns = round_up(s->wanted + s->wanted / 4 + 2, SL_PANEL);
+        s->info.patch = s->def.patch > 0 ? s->def.patch : choose_patch(s);
+    }
+    s->info.block = *dense ? 0 : s->block;
+    s->stage = s->wanted == 0 ? SL_STAGE_CERTIFY : skeleton ? SL_STAGE_SKELETON : SL_STAGE_KRYLOV;
+}
+
+int64_t sl_lanczos_estimate(const sl_lanczos *s, bool dense)
+{
+    const int64_t n = s->n, real = sizeof(double), index = sizeof(int32_t), entries = s->A->colptr[s->n];
+    if (dense) {
+        return real * (2 * n * n + 2 * n * s->count);
+    }
+    const int64_t ordering = 16 * index * n + 4 * index * entries;
+    if (s->factor == NULL) { /* before the analysis: L has at least A's entries */
+        return ordering + real * entries + sl_panels_bytes(n, s->null_count + s->columns);
+    }
+    const int64_t factor = real * sl_cholesky_nnz(s->factor) + 6 * index * n + 3 * index * entries;
+    const int64_t rows = (2 * entries - n) * (real + index) + real * n;
+    const int64_t vectors = sl_panels_bytes(n, s->columns) + sl_panels_bytes(n, s->null_count);
+    const int64_t work = real * sl_cholesky_block_work_size(s->factor, SL_PANEL);
+    const int64_t first = sl_cholesky_top_first(s->factor);
+    const int64_t basis = s->stage == SL_STAGE_SKELETON
+                              ? sl_krylov_bytes(n - first, s->null_count, SL_PANEL, s->max_basis) + real * 8 * n
+                              : sl_krylov_bytes(n, s->null_count, s->block, s->max_basis);
+    return factor + rows + work + vectors + basis;
+}
