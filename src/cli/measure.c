@@ -77,6 +77,7 @@ static int measure_file(cli_run *run, const char *path, int32_t resolution)
         code = cli_fail(run, SL_BAD_INPUT, &diag);
     } else {
         sl_meshfile_polygons(file, &polygons);
+        snprintf(diag.file, sizeof diag.file, "%s", path);
         code = cli_fail(run, sl_measure_atlas(&polygons, file->corner_uv, resolution, &run->context, &m, &diag), &diag);
     }
     sl_meshfile_free(file);

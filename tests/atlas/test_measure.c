@@ -159,6 +159,38 @@ static void a_missing_uv_is_named(void **state)
     free(g);
 }
 
+/* A chevron whose fan from the first corner turns over: laid flat as it is, nothing is flipped. */
+static void a_concave_facet_is_not_a_flip(void **state)
+{
+    (void)state;
+    const double xyz[] = {2.1, 1.0, 0, 0, 2.0, 0, 0.7, 1.05, 0, 0.1, 0, 0};
+    const int32_t first[] = {0, 4};
+    for (int32_t turn = 0; turn < 4; turn++) {
+        int32_t index[4];
+        double uv[8];
+        for (int k = 0; k < 4; k++) {
+            index[k] = (k + turn) % 4;
+            uv[2 * k] = 0.3 * xyz[3 * index[k]];
+            uv[2 * k + 1] = 0.3 * xyz[3 * index[k] + 1];
+        }
+        const sl_polygons polygons = {4, 1, xyz, first, index};
+        sl_atlas_measure m;
+        assert_int_equal(sl_measure_atlas(&polygons, uv, 256, NULL, &m, NULL), SL_OK);
+        assert_true(m.global.flipped == 0 && m.overlap_inside == 0.0 && test_near(m.chart_l2_worst, 1.0, 1e-9));
+    }
+}
+
+static void a_mesh_of_one_point_has_no_seams(void **state)
+{
+    (void)state;
+    const double xyz[] = {1, 2, 3, 1, 2, 3, 1, 2, 3}, uv[] = {0.1, 0.1, 0.2, 0.1, 0.1, 0.3};
+    const int32_t first[] = {0, 3}, index[] = {0, 1, 2};
+    const sl_polygons polygons = {3, 1, xyz, first, index};
+    sl_atlas_measure m;
+    assert_int_equal(sl_measure_atlas(&polygons, uv, 256, NULL, &m, NULL), SL_OK);
+    assert_true(m.seam_diagonal == 0.0 && m.seam_length == 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +199,8 @@ int main(void)
         cmocka_unit_test(mirrored_charts_are_not_flipped_but_a_turned_facet_is),
         cmocka_unit_test(charts_on_top_of_one_another_overlap_across),
         cmocka_unit_test(a_facet_written_the_other_way_round_is_not_a_flip),
+        cmocka_unit_test(a_concave_facet_is_not_a_flip),
+        cmocka_unit_test(a_mesh_of_one_point_has_no_seams),
         cmocka_unit_test(a_missing_uv_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

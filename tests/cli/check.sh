@@ -39,6 +39,12 @@ no_temporaries() {
     [ -z "$left" ] || complain "left behind: $left"
 }
 
+# json FILE: is it valid JSON?
+json() {
+    command -v python3 >/dev/null || return 0
+    python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$1" || complain "$1 is no JSON"
+}
+
 # --- help and usage
 expect 0 "$seamlab" --help
 contains out.txt unwrap
@@ -180,14 +186,54 @@ contains err.txt '.'
 
 # --- magnitudes: 1e-30 to 1e30
 for scale in 1e-30 1e30; do
-    awk -v s=$scale '$1 == "v" { printf "v %.17g %.17g %.17g\n", $2 * s, $3 * s, $4 * s; next } { print }' $mesh >scaled.obj
+    awk -v s=$scale '$1 == "v" { printf "v %.17g %.17g %.17g\n", $2 * s, $3 * s, $4 * s; next } { print }' ball/sphere.obj >scaled.obj
     expect 0 "$seamlab" unwrap scaled.obj -o scaled-uv.obj
 done
 
+# --- hostile options: what cannot be is said, nothing is written under a wrong name
+expect 4 "$seamlab" unwrap bare.obj -o wide.obj --margin 1024 --resolution 64
+contains err.txt 'do not fit'
+no_file wide.obj wide.atlas.json
+expect 2 "$seamlab" segment $mesh -o charts.obj
+contains err.txt '.ply'
+expect 2 "$seamlab" spectrum $mesh -o vectors.gif
+no_file charts.obj vectors.gif
+for option in '--vectors 1' '--margin nan' '--max-stretch inf' '--smooth -1' '--threads 1.5' '--quiet=1' '--join=maybe'; do
+    expect 2 "$seamlab" unwrap $mesh -o x.obj $option
+done
+expect 0 "$seamlab" unwrap bare.obj -o small.obj --vectors 200 --threads 64 --resolution 16 --margin 0
+expect 3 "$seamlab" measure small.obj bare.obj
+contains err.txt 'bare.obj'
+
+# --- meshes without extent, of one facet, bent, repeated
+printf 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\nf 3 2 1\n' >point.obj
+expect 0 "$seamlab" unwrap point.obj -o point-uv.obj --json
+! grep -qi nan out.txt point-uv.atlas.json || complain "a mesh of one point has nan in its figures"
+json out.txt
+json point-uv.atlas.json
+printf 'v 0 0 0\nv 2 0.9 0\nv 0 2 0.1\nv 0.7 1 0\nv 3 1 1\nf 2 3 4 1\nf 1 2 5\nf 1 2 5\n' >chevron.obj
+expect 0 "$seamlab" unwrap chevron.obj -o chevron-uv.obj
+expect 0 "$seamlab" measure chevron-uv.obj
+contains out.txt 'flipped 0'
+
+# --- in and out through pipes, over itself, through a link; names and materials stay
+"$seamlab" unwrap - -o - --quiet <bare.obj | grep -q '^vt ' || complain "no atlas through a pipe"
+cp chevron.obj self.obj
+expect 0 "$seamlab" unwrap self.obj -o self.obj
+cmp -s self.obj chevron-uv.obj || complain "another result when the output is the input"
+printf '# kept\nmtllib a.mtl\no Thing\nv 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0\nvn 0 0 1\ng one two\nusemtl red\ns 1\nf 1//1 2//1 3//1 4//1\n' >named.obj
+expect 0 "$seamlab" unwrap named.obj -o named-uv.obj
+grep -v '^vt' named-uv.obj | sed -E 's|/[0-9]+/|//|g' | cmp -s - named.obj || complain "names or materials were lost"
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt -3 -2\nvt 998 -2\nvt 998 7\nvt -3 7\nf 1/1 2/2 3/3 4/4\n' >pages.obj
+expect 0 "$seamlab" measure pages.obj
+expect 0 "$seamlab" unwrap pages.obj -o pages-uv.obj --keep-seams
+
 # --- a full disk and an unwritable folder leave nothing behind
 if [ -w /dev/full ]; then
-    "$seamlab" segment $mesh >/dev/full 2>err.txt
-    [ $? = 1 ] || complain "a full disk is not exit 1"
+    for words in "segment bare.obj" "--help" "unwrap --help" "demo --list" "check bare.obj" "unwrap bare.obj -o - --quiet"; do
+        "$seamlab" $words >/dev/full 2>err.txt
+        [ $? = 1 ] || complain "a full disk is not exit 1: $words"
+    done
 fi
 expect 1 "$seamlab" unwrap $mesh -o no-such-folder/x.obj
 no_file no-such-folder
@@ -208,5 +254,19 @@ if [ "$(id -u)" -ge 0 ]; then
     *) complain "exit $code after Ctrl-C" ;;
     esac
 fi
+# the pictures come before the files: an interruption there leaves the old ones too
+for delay in 0.1 0.3 0.5; do
+    "$seamlab" unwrap bare.obj -o kept.obj --preview pictures2 --quiet 2>/dev/null &
+    pid=$!
+    sleep $delay
+    kill -TERM $pid 2>/dev/null
+    wait $pid
+    code=$?
+    case $code in
+    130) cmp -s kept.obj before.obj || complain "a run interrupted while drawing changed its output" ;;
+    0) cp before.obj kept.obj ;;
+    *) complain "exit $code after SIGTERM" ;;
+    esac
+done
 no_temporaries
 exit $bad

@@ -187,6 +187,33 @@ static void too_many_charts_for_the_page_are_infeasible(void **state)
     free(set);
 }
 
+/* A page that is all margin holds points, not charts: nothing of them would be left. */
+static void charts_that_would_shrink_to_points_are_infeasible(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(8);
+    chart_set *set = random_charts(&rng, 1);
+    const sl_pack_def def = {.resolution = 64, .margin = 64.0, .rotations = 4};
+    sl_placement place[MAX_CHARTS];
+    sl_pack_info info;
+    assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &info), SL_INFEASIBLE);
+    free(set);
+}
+
+/* Area alone is no bound for a needle: the search must start where its length fits. */
+static void a_needle_is_packed_at_the_length_of_the_page(void **state)
+{
+    (void)state;
+    const double uv[] = {0, 0, 3.0, 0.2, 1.5, 0.1 + 1e-12};
+    const int32_t tri[] = {0, 1, 2};
+    const sl_pack_chart chart = {3, 1, uv, tri};
+    const sl_pack_def def = sl_pack_default();
+    sl_placement place;
+    sl_pack_info info;
+    assert_int_equal(sl_pack(1, &chart, &def, NULL, &place, &info), SL_OK);
+    assert_true(info.scale * hypot(3.0, 0.2) > 0.9);
+}
+
 static void a_uv_that_is_not_finite_is_bad_input(void **state)
 {
     (void)state;
@@ -227,6 +254,8 @@ int main(void)
         cmocka_unit_test(the_same_charts_twice_as_large_are_packed_alike),
         cmocka_unit_test(charts_without_area_get_a_texel_each),
         cmocka_unit_test(too_many_charts_for_the_page_are_infeasible),
+        cmocka_unit_test(charts_that_would_shrink_to_points_are_infeasible),
+        cmocka_unit_test(a_needle_is_packed_at_the_length_of_the_page),
         cmocka_unit_test(a_uv_that_is_not_finite_is_bad_input),
         cmocka_unit_test(packing_can_be_cancelled),
     };
