@@ -13,6 +13,10 @@ static const double dependent_share = 1e-11;
 /* A block that keeps less than this share of its length is orthogonalised again: cancellation has cost it digits. */
 static const double kept_share = 1e-2;
 
+/* Every second block is looked back at: the three-term recurrence hands what is left in the others on undiminished, but
+ * hardly magnified. */
+enum { look_back_every = 2 };
+
 /* Least pivot, relative to its column, of a Gram matrix that Cholesky may take: below, columns go one by one. */
 static const double gram_pivot = 1e-8;
 
@@ -219,12 +223,30 @@ static void orthonormalise(sl_krylov *k, double *G, const double *before, double
     }
 }
 
+/* W := random vectors, orthonormal and orthogonal to the basis: projected twice, for each pass wins the digits the one
+ * before lost. */
+static void random_block(sl_krylov *k)
+{
+    const int32_t w = k->w, columns = basis_columns(k);
+    const sl_panel_pair alone = {w, {k->W, NULL}, {k->again, NULL}};
+    double before[SL_PANEL], G[SL_PANEL * SL_PANEL], R[SL_PANEL * SL_PANEL];
+    for (int64_t i = 0; i < (int64_t)k->Q.rows * w; i++) {
+        k->W[i] = 2.0 * sl_rng_uniform(&k->rng) - 1.0;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        sl_panels_project(&k->Q, columns, &alone, k->partial, k->context);
+        sl_panels_subtract(&k->Q, columns, &alone, k->partial, G, k->context);
+    }
+    for (int32_t c = 0; c < w; c++) {
+        before[c] = sqrt((double)k->Q.rows);
+    }
+    orthonormalise(k, G, before, R);
+}
+
 void sl_krylov_random(sl_krylov *k)
 {
     while (k->pending < k->block) {
-        for (int32_t c = 0; c < k->w; c++) {
-            random_lane(k, c);
-        }
+        random_block(k);
         sl_panels_store(&k->Q, basis_columns(k), k->W, k->w);
         k->pending += k->w;
     }
@@ -261,15 +283,21 @@ static void correct_projection(sl_krylov *k, int32_t at)
 static void project(sl_krylov *k, int32_t at, double *before, double *G)
 {
     const int32_t w = k->w, columns = basis_columns(k);
-    const sl_panel_pair looked_at = {w, {k->W, k->spare}, {k->H, k->again}};
-    const sl_panel_pair both = {w, {k->W, k->spare}, {k->corrected, k->again}};
+    const bool look_back = k->pending > w || k->applied / w % look_back_every == 0; /* wider blocks: always */
+    double *P = look_back ? k->spare : NULL;
+    const sl_panel_pair looked_at = {w, {k->W, P}, {k->H, k->again}};
+    const sl_panel_pair both = {w, {k->W, P}, {look_back ? k->corrected : k->H, k->again}};
     const sl_panel_pair alone = {w, {k->W, NULL}, {k->again, NULL}};
     bool again = false;
     sl_panels_project(&k->Q, columns, &looked_at, k->partial, k->context);
-    memset(k->again + (int64_t)at * w, 0, (size_t)(w * w) * sizeof *k->again);
-    correct_projection(k, at);
+    if (look_back) {
+        memset(k->again + (int64_t)at * w, 0, (size_t)(w * w) * sizeof *k->again);
+        correct_projection(k, at);
+    }
     sl_panels_subtract(&k->Q, columns, &both, k->partial, G, k->context);
-    sl_panels_store(&k->Q, at, k->spare, w);
+    if (look_back) {
+        sl_panels_store(&k->Q, at, k->spare, w);
+    }
     for (int32_t c = 0; c < w; c++) {
         double squares = G[c * w + c];
         for (int32_t i = 0; i < columns; i++) {
@@ -342,26 +370,21 @@ static void copy_matrix(sl_krylov *k)
     }
 }
 
-/* The `found` largest eigenvalues of T, ascending, and their vectors. Where values coincide LAPACK's search for some of
- * them may fail; then all are computed. */
+/* All eigenpairs of T, ascending. Where values coincide LAPACK's fastest method may fail; then the simplest is used. */
 static sl_status solve_matrix(sl_krylov *k)
 {
-    const int32_t m = k->applied, skip = m - k->found;
+    const int32_t m = k->applied;
     lapack_int found = 0, *support = k->lapack_int + 10 * (int64_t)m;
     copy_matrix(k);
-    lapack_int info = LAPACKE_dsyevr_work(LAPACK_COL_MAJOR, 'V', 'I', 'L', m, k->copy, m, 0.0, 0.0, skip + 1, m, 0.0,
-                                          &found, k->theta, k->S, m, support, k->lapack, 26 * m, k->lapack_int, 10 * m);
-    if (info == 0 && found == k->found) {
+    lapack_int info = LAPACKE_dsyevr_work(LAPACK_COL_MAJOR, 'V', 'A', 'L', m, k->copy, m, 0.0, 0.0, 0, 0, 0.0, &found,
+                                          k->theta, k->S, m, support, k->lapack, 26 * m, k->lapack_int, 10 * m);
+    if (info == 0 && found == m) {
         return SL_OK;
     }
     copy_matrix(k);
     info = LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', m, k->copy, m, k->theta, k->lapack, 26 * m);
-    if (info != 0) {
-        return SL_INTERNAL;
-    }
-    memmove(k->theta, k->theta + skip, (size_t)k->found * sizeof *k->theta);
-    memcpy(k->S, k->copy + (int64_t)skip * m, (size_t)k->found * (size_t)m * sizeof *k->S);
-    return SL_OK;
+    memcpy(k->S, k->copy, (size_t)m * (size_t)m * sizeof *k->S);
+    return info == 0 ? SL_OK : SL_INTERNAL;
 }
 
 sl_status sl_krylov_ritz(sl_krylov *k, int32_t count)
@@ -369,7 +392,7 @@ sl_status sl_krylov_ritz(sl_krylov *k, int32_t count)
     const int32_t m = k->applied;
     k->found = count < m ? count : m;
     const sl_status status = solve_matrix(k);
-    for (int32_t a = 0, b = k->found - 1; a < b && status == SL_OK; a++, b--) {
+    for (int32_t a = 0, b = m - 1; a < b && status == SL_OK; a++, b--) {
         const double t = k->theta[a];
         k->theta[a] = k->theta[b];
         k->theta[b] = t;

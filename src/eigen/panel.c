@@ -208,22 +208,39 @@ void sl_panels_divide(int32_t rows, double *W, int32_t w, const double *R, doubl
     add_partials(&s, rows, 0, s.stride, G);
 }
 
+/* Lanes of a block at column `at` that lie in the first of the two panels it may touch. */
+static int32_t first_part(int32_t at, int32_t w)
+{
+    const int32_t room = SL_PANEL - at % SL_PANEL;
+    return room < w ? room : w;
+}
+
 void sl_panels_store(sl_panels *M, int32_t at, const double *W, int32_t w)
 {
-    for (int32_t c = 0; c < w; c++) {
-        double *to = sl_panel_at(M, (at + c) / SL_PANEL) + (at + c) % SL_PANEL;
-        for (int64_t r = 0; r < M->rows; r++) {
-            to[r * SL_PANEL] = W[r * w + c];
+    const int32_t part = first_part(at, w);
+    double *to = sl_panel_at(M, at / SL_PANEL) + at % SL_PANEL;
+    double *rest = part < w ? sl_panel_at(M, at / SL_PANEL + 1) - part : NULL;
+    for (int64_t r = 0; r < M->rows; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            to[r * SL_PANEL + c] = W[r * w + c];
+        }
+        for (int32_t c = part; c < w; c++) {
+            rest[r * SL_PANEL + c] = W[r * w + c];
         }
     }
 }
 
 void sl_panels_load(const sl_panels *M, int32_t at, double *W, int32_t w)
 {
-    for (int32_t c = 0; c < w; c++) {
-        const double *from = sl_panel_at(M, (at + c) / SL_PANEL) + (at + c) % SL_PANEL;
-        for (int64_t r = 0; r < M->rows; r++) {
-            W[r * w + c] = from[r * SL_PANEL];
+    const int32_t part = first_part(at, w);
+    const double *from = sl_panel_at(M, at / SL_PANEL) + at % SL_PANEL;
+    const double *rest = part < w ? sl_panel_at(M, at / SL_PANEL + 1) - part : NULL;
+    for (int64_t r = 0; r < M->rows; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            W[r * w + c] = from[r * SL_PANEL + c];
+        }
+        for (int32_t c = part; c < w; c++) {
+            W[r * w + c] = rest[r * SL_PANEL + c];
         }
     }
 }

@@ -38,45 +38,55 @@ void sl_lanczos_summarise(sl_lanczos *s)
     info->converged = info->converged_count == s->count && s->stage == SL_STAGE_DONE;
 }
 
-/* Column k, unknowns as in A. */
-static void copy_column(const sl_lanczos *s, const sl_panels *from, int32_t k, double *to)
+/* Columns of `from` with unknowns as in A, column-major: a panel's lanes together, as they lie. */
+static void copy_columns(const sl_lanczos *s, const sl_panels *from, int32_t columns, double *to)
 {
-    const double *lane = sl_panel_at(from, k / SL_PANEL) + k % SL_PANEL;
-    for (int64_t i = 0; i < s->n; i++) {
-        to[s->perm[i]] = lane[i * SL_PANEL];
+    const int64_t n = s->n;
+    for (int32_t first = 0; first < columns; first += SL_PANEL) {
+        const double *panel = sl_panel_at(from, first / SL_PANEL);
+        const int32_t lanes = columns - first < SL_PANEL ? columns - first : SL_PANEL;
+        double *block = to + n * first;
+        for (int64_t i = 0; i < n; i++) {
+            for (int32_t c = 0; c < lanes; c++) {
+                block[n * c + s->perm[i]] = panel[i * SL_PANEL + c];
+            }
+        }
+    }
+    for (int32_t k = 0; k < columns; k++) {
+        sl_lanczos_sign_rule(s->n, to + n * k);
+    }
+}
+
+static void dense_result(const sl_lanczos *s, double *lambda, double *vectors, double *residual)
+{
+    memcpy(lambda, s->dense_lambda, (size_t)s->count * sizeof *lambda);
+    memcpy(vectors, s->dense_X, (size_t)s->n * (size_t)s->count * sizeof *vectors);
+    if (residual != NULL) {
+        memcpy(residual, s->dense_residual, (size_t)s->count * sizeof *residual);
     }
 }
 
 void sl_lanczos_result(const sl_lanczos *s, double *lambda, double *vectors, double *residual)
 {
-    const int64_t n = s->n;
+    double *computed = vectors + (int64_t)s->n * s->null_count;
     if (s->info.dense) {
-        memcpy(lambda, s->dense_lambda, (size_t)s->count * sizeof *lambda);
-        memcpy(vectors, s->dense_X, (size_t)(n * s->count) * sizeof *vectors);
-        if (residual != NULL) {
-            memcpy(residual, s->dense_residual, (size_t)s->count * sizeof *residual);
-        }
+        dense_result(s, lambda, vectors, residual);
         return;
     }
     memset(lambda, 0, (size_t)s->count * sizeof *lambda);
     if (residual != NULL) {
         memset(residual, 0, (size_t)s->count * sizeof *residual);
     }
-    for (int32_t k = 0; k < s->null_count; k++) {
-        copy_column(s, &s->N, k, vectors + n * k);
-        sl_lanczos_sign_rule(s->n, vectors + n * k);
+    copy_columns(s, &s->N, s->null_count, vectors);
+    if (!s->have_pairs) {
+        memset(computed, 0, (size_t)s->n * (size_t)s->wanted * sizeof *computed);
+        return;
     }
+    copy_columns(s, &s->X, s->wanted, computed);
     for (int32_t k = 0; k < s->wanted; k++) {
-        double *v = vectors + n * (s->null_count + k);
-        if (!s->have_pairs) {
-            memset(v, 0, (size_t)n * sizeof *v);
-            continue;
-        }
         lambda[s->null_count + k] = s->lambda[k];
         if (residual != NULL) {
             residual[s->null_count + k] = s->residual[k] / s->norm;
         }
-        copy_column(s, &s->X, k, v);
-        sl_lanczos_sign_rule(s->n, v);
     }
 }
