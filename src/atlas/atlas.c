@@ -158,6 +158,10 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
             snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): stretch L2 %.4g is above the bound %.4g",
                      c, chart->count, seg->face[chart->first], chart->flat.distortion.l2,
                      def->segment.flatten.max_stretch);
+        } else if (chart->flat.verdict == SL_CHART_SHEARED) {
+            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): mean s1/s2 %.4g is above the bound %.4g",
+                     c, chart->count, seg->face[chart->first], chart->flat.distortion.angle_mean,
+                     def->segment.flatten.max_angle);
         } else {
             snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): %s", c, chart->count,
                      seg->face[chart->first], sl_flatten_verdict_name(chart->flat.verdict));
@@ -199,7 +203,8 @@ static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl
     const sl_segmentation *seg = atlas->segmentation;
     for (int32_t c = 0; c < seg->nchart; c++) {
         const sl_flatten_verdict verdict = seg->chart[c].flat.verdict;
-        if (seg->chart[c].capped && verdict != SL_CHART_VALID && verdict != SL_CHART_STRETCHED) {
+        if (seg->chart[c].capped && verdict != SL_CHART_VALID && verdict != SL_CHART_STRETCHED &&
+            verdict != SL_CHART_SHEARED) {
             sl_diag_reason(diag, "with at most %d charts, chart %d (%d facets) cannot be laid flat: %s",
                            def->segment.max_charts, c, seg->chart[c].count, sl_flatten_verdict_name(verdict));
             sl_diag_hint(diag, "raise --max-charts");

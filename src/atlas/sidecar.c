@@ -87,6 +87,7 @@ static json_t *options_json(const sl_atlas_def *def)
     json_object_set_new(j, "sew", json_boolean(s->sew));
     json_object_set_new(j, "sew_stretch", number(s->sew_stretch));
     json_object_set_new(j, "max_stretch", number(s->flatten.max_stretch));
+    json_object_set_new(j, "max_angle", number(s->flatten.max_angle));
     json_object_set_new(j, "max_charts", json_integer(s->max_charts));
     json_object_set_new(j, "energy", json_string(s->flatten.abf.energy == SL_ABF_WEIGHTED ? "weighted" : "unweighted"));
     json_object_set_new(j, "tutte", json_boolean(s->flatten.tutte));

@@ -38,6 +38,8 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
         {"sew-stretch", 0, CLI_REAL, &o->def.sew_stretch, 1.0, 1e6, NULL, "L2", "bound on a merged chart (1.25)"},
         {"protect-first", 0, CLI_ON_OFF, &o->def.protect_first, 0, 0, NULL, NULL, "never sew the first cut (on)"},
         {"max-stretch", 0, CLI_REAL, &o->def.flatten.max_stretch, 1.0, 1e300, NULL, "L2", "bound on a chart (1.5)"},
+        {"max-angle", 0, CLI_REAL, &o->def.flatten.max_angle, 1.0, 1e300, NULL, "R",
+         "bound on a chart's mean s1/s2 (1.75)"},
         {"max-charts", 0, CLI_INT, &o->def.max_charts, 1, INT32_MAX, NULL, "N", "stop splitting there (100000)"},
         {"energy", 0, CLI_CHOICE, &o->energy, 0, 0, "weighted|unweighted", NULL,
          "ABF++: 1/phi^2, or the paper's Eq. 1"},

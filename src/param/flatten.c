@@ -27,7 +27,7 @@ typedef struct chain {
     const sl_patch *patch;
     const sl_flatten_def *def;
     const sl_context *context;
-    double max_stretch;
+    double max_stretch, max_angle;
     int32_t nb;
     int32_t *border;           /* nb vertex pairs */
     double *map;               /* nv x 2: the map under trial */
@@ -41,6 +41,7 @@ sl_flatten_def sl_flatten_default(void)
                             .minimise_stretch = true,
                             .tutte = true,
                             .max_stretch = 1.5,
+                            .max_angle = INFINITY,
                             .stretch = sl_stretch_default()};
 }
 
@@ -52,7 +53,8 @@ const char *sl_flatten_method_name(sl_flatten_method method)
 
 const char *sl_flatten_verdict_name(sl_flatten_verdict verdict)
 {
-    static const char *const name[] = {"valid", "not a disk", "not converged", "flipped", "overlaps", "stretched"};
+    static const char *const name[] = {"valid",    "not a disk", "not converged", "flipped",
+                                       "overlaps", "stretched",  "sheared"};
     return verdict >= 0 && (size_t)verdict < SL_COUNTOF(name) ? name[verdict] : "unknown";
 }
 
@@ -61,6 +63,8 @@ static int rank(sl_flatten_verdict verdict)
 {
     switch (verdict) {
     case SL_CHART_VALID:
+        return 6;
+    case SL_CHART_SHEARED:
         return 5;
     case SL_CHART_STRETCHED:
         return 4;
@@ -74,6 +78,12 @@ static int rank(sl_flatten_verdict verdict)
         break;
     }
     return 0;
+}
+
+/* An embedding that is only too distorted can be refined. */
+static bool is_distorted(sl_flatten_verdict verdict)
+{
+    return verdict == SL_CHART_STRETCHED || verdict == SL_CHART_SHEARED;
 }
 
 /* Judges c->map, opened where that makes it an embedding; `converged` is the method's own word. */
@@ -93,8 +103,10 @@ static sl_status judge(const chain *c, bool converged, sl_flatten_result *out)
         out->verdict = SL_CHART_FLIPPED;
     } else if (!out->certificate.embedded) {
         out->verdict = SL_CHART_OVERLAPS;
+    } else if (!(out->distortion.l2 <= c->max_stretch)) {
+        out->verdict = SL_CHART_STRETCHED;
     } else {
-        out->verdict = out->distortion.l2 <= c->max_stretch ? SL_CHART_VALID : SL_CHART_STRETCHED;
+        out->verdict = out->distortion.angle_mean <= c->max_angle ? SL_CHART_VALID : SL_CHART_SHEARED;
     }
 cleanup:
     return status;
@@ -110,9 +122,9 @@ static sl_status consider(chain *c, sl_flatten_method method, bool minimised, bo
     if (status != SL_OK) {
         return status;
     }
-    const int old = rank(c->result->verdict), new = rank(judged.verdict);
-    if (c->result->method == SL_FLATTEN_NONE || new > old ||
-        (new == old &&judged.distortion.l2 < c->result->distortion.l2)) {
+    const int before = rank(c->result->verdict), now = rank(judged.verdict);
+    if (c->result->method == SL_FLATTEN_NONE || now > before ||
+        (now == before && judged.distortion.l2 < c->result->distortion.l2)) {
         if (sl_stretch_all_finite(2 * (int64_t)c->patch->nv, c->map)) {
             memcpy(c->best, c->map, 2 * (size_t)c->patch->nv * sizeof *c->best);
             *c->result = judged;
@@ -184,22 +196,37 @@ cleanup:
     return status;
 }
 
-/* Refines c->map, an embedding of method `method`. Its border stays simple: what comes out is an embedding. */
+/* Minimises c->map by def and judges what comes out. */
+static sl_status minimise(chain *c, const sl_stretch_def *def, sl_flatten_method method, sl_flatten_result *trial)
+{
+    const int32_t before = c->result->stretch.iterations;
+    const sl_status status = sl_stretch_minimise(c->patch, def, c->context, c->map, &c->result->stretch);
+    c->result->stretch.iterations += before;
+    if (status != SL_OK) {
+        return is_no_answer(status) ? SL_OK : status;
+    }
+    sl_flatten_scale(c->patch, c->map);
+    return consider(c, method, true, true, trial);
+}
+
+/* Refines c->map, an embedding of method `method`: until its stretch is within the bound, and where the angles are not
+ * yet, to the end. Its border stays simple: what comes out is an embedding. */
 static sl_status refine(chain *c, sl_flatten_method method)
 {
     sl_stretch_def def = c->def->stretch;
+    sl_flatten_result trial = {.verdict = SL_CHART_NOT_CONVERGED};
     def.simple_border = true;
     if (isfinite(c->max_stretch)) {
         def.target_l2 = 1.0 + TARGET_SHARE * (c->max_stretch - 1.0);
         def.hopeless_l2 = def.hopeless_l2 > 0.0 ? def.hopeless_l2 : FAR_L2;
         def.hopeless_gain = def.hopeless_gain > 0.0 ? def.hopeless_gain : HOPELESS_GAIN;
     }
-    sl_status status = sl_stretch_minimise(c->patch, &def, c->context, c->map, &c->result->stretch);
-    if (status != SL_OK) {
-        return is_no_answer(status) ? SL_OK : status;
+    const sl_status status = minimise(c, &def, method, &trial);
+    if (status != SL_OK || trial.verdict != SL_CHART_SHEARED) {
+        return status;
     }
-    sl_flatten_scale(c->patch, c->map);
-    return consider(c, method, true, true, NULL);
+    def.target_l2 = 0.0;
+    return minimise(c, &def, method, NULL);
 }
 
 /* Tutte's embedding, with uniform weights: cotangents shrink long limbs by up to 1e4 more. */
@@ -223,8 +250,7 @@ static sl_status flatten_disk(chain *c)
         goto cleanup;
     }
     const sl_flatten_method conformal = trial.method;
-    if (c->def->minimise_stretch && trial.verdict == SL_CHART_STRETCHED &&
-        (trial.distortion.l2 <= FAR_L2 || !c->def->tutte)) {
+    if (c->def->minimise_stretch && is_distorted(trial.verdict) && (trial.distortion.l2 <= FAR_L2 || !c->def->tutte)) {
         SL_TRY(refine(c, conformal));
         goto cleanup;
     }
@@ -232,7 +258,7 @@ static sl_status flatten_disk(chain *c)
         goto cleanup;
     }
     SL_TRY(try_tutte(c, &trial));
-    if (c->def->minimise_stretch && trial.verdict == SL_CHART_STRETCHED) {
+    if (c->def->minimise_stretch && is_distorted(trial.verdict)) {
         SL_TRY(refine(c, SL_FLATTEN_TUTTE));
     }
 cleanup:
@@ -253,6 +279,7 @@ sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_
                .def = def,
                .context = context,
                .max_stretch = one_facet ? INFINITY : def->max_stretch,
+               .max_angle = one_facet ? INFINITY : def->max_angle,
                .best = uv,
                .result = result};
     bool done;

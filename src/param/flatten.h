@@ -23,7 +23,8 @@ typedef enum sl_flatten_verdict {
     SL_CHART_NOT_CONVERGED,
     SL_CHART_FLIPPED,
     SL_CHART_OVERLAPS,
-    SL_CHART_STRETCHED
+    SL_CHART_STRETCHED, /* L2 above the bound */
+    SL_CHART_SHEARED    /* the mean of s1/s2 above the bound */
 } sl_flatten_verdict;
 
 typedef struct sl_flatten_def {
@@ -32,6 +33,7 @@ typedef struct sl_flatten_def {
                             */
     bool tutte;            /* Tutte as last resort where ABF++ fails; default true */
     double max_stretch;    /* tau, the bound on L2; default 1.5; infinite = none */
+    double max_angle;      /* bound on the area-weighted mean of s1/s2, above 1; default infinite = none */
     sl_stretch_def stretch;
 } sl_flatten_def;
 
@@ -61,7 +63,8 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
  * from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0, values of the chain's own).
  * With minimise_stretch and tutte both off: the plain ABF++ verdict.
  *
- * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch.
+ * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch,
+ * mean s1/s2 <= max_angle. A chart within the first bound but not the second is minimised to the end.
  * A single-facet patch is exempt from the stretch bound; without area it is valid as one point (method PLANAR). Charts
  * with 3D-degenerate triangles are judged without them for stretch. */
 SL_NODISCARD sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context,

@@ -1,18 +1,26 @@
 /* Settings of the segmentation. */
 #include "segment/segment.h"
 
+#include <math.h>
+
+/* A chart may be within the bound on stretch and still be sheared: above this mean s1/s2 the squares of a checkerboard
+ * no longer look like squares. */
+static const double DEFAULT_MAX_ANGLE = 1.75;
+
 sl_segment_def sl_segment_default(void)
 {
-    return (sl_segment_def){.rule = SL_RULE_LOOKAHEAD,
-                            .vectors = 30,
-                            .pairing = SL_PAIR_AUTO,
-                            .smooth = 2,
-                            .join = true,
-                            .sew = true,
-                            .sew_stretch = 1.25,
-                            .protect_first = true,
-                            .max_charts = 100000,
-                            .flatten = sl_flatten_default()};
+    sl_segment_def def = {.rule = SL_RULE_LOOKAHEAD,
+                          .vectors = 30,
+                          .pairing = SL_PAIR_AUTO,
+                          .smooth = 2,
+                          .join = true,
+                          .sew = true,
+                          .sew_stretch = 1.25,
+                          .protect_first = true,
+                          .max_charts = 100000,
+                          .flatten = sl_flatten_default()};
+    def.flatten.max_angle = DEFAULT_MAX_ANGLE;
+    return def;
 }
 
 sl_segment_def sl_segment_paper(void)
@@ -26,5 +34,6 @@ sl_segment_def sl_segment_paper(void)
     def.flatten.abf.energy = SL_ABF_UNWEIGHTED;
     def.flatten.minimise_stretch = false;
     def.flatten.tutte = false;
+    def.flatten.max_angle = INFINITY;
     return def;
 }

@@ -57,7 +57,7 @@ static sl_status relax(const sl_patch *patch, const sl_flatten_def *def, const s
     SL_TRY(sl_patch_border_pairs(patch, &border, &nb));
     SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, nb, border, &certificate));
     SL_TRY(sl_distortion_measure_indexed(patch->nt, patch->tri, patch->xyz, uv, &distortion));
-    if (certificate.embedded && distortion.l2 < job->flat.distortion.l2) {
+    if (certificate.embedded && distortion.l2 < job->flat.distortion.l2 && distortion.angle_mean <= def->max_angle) {
         scatter(patch, uv, job->corner_uv);
         info.iterations += job->flat.stretch.iterations;
         info.energy_before = job->flat.stretch.energy_before;

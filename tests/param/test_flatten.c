@@ -31,7 +31,7 @@ static outcome flatten(const sl_patch *patch, const sl_flatten_def *def)
         assert_true(c.embedded && test_near_rel(chart_uv_area(patch, o.uv), chart_area(patch), 1e-9));
     }
     if (o.r.verdict == SL_CHART_VALID && !sl_flatten_is_one_facet(patch)) {
-        assert_true(d.l2 <= def->max_stretch);
+        assert_true(d.l2 <= def->max_stretch && d.angle_mean <= def->max_angle);
     }
     return o;
 }
@@ -208,6 +208,32 @@ static void mild_stretch_is_refined_from_abf(void **state)
     sl_patch_free(patch);
 }
 
+/* Lowering the stretch of a cap costs angles: a bound on them turns the same map from valid to sheared, and makes the
+ * minimisation go on to its end. */
+static void a_chart_within_its_stretch_may_still_be_sheared(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(6, 0.15, chart_cap, 2.6, 0x31d);
+    sl_flatten_def def = sl_flatten_default();
+    def.max_stretch = 1.25;
+    outcome o = flatten(patch, &def);
+    const double angle = o.r.distortion.angle_mean;
+    const int32_t steps = o.r.stretch.iterations;
+    assert_int_equal(o.r.verdict, SL_CHART_VALID);
+    assert_true(o.r.stretch_minimised && angle > 1.01);
+    free(o.uv);
+    def.max_angle = 1.0 + 1e-6;
+    o = flatten(patch, &def);
+    assert_int_equal(o.r.verdict, SL_CHART_SHEARED);
+    assert_true(o.r.stretch.iterations > steps && o.r.certificate.embedded);
+    free(o.uv);
+    def.max_angle = 1.01 * angle;
+    o = flatten(patch, &def);
+    assert_int_equal(o.r.verdict, SL_CHART_VALID);
+    free(o.uv);
+    sl_patch_free(patch);
+}
+
 static void a_ramp_overlaps_by_abf_and_is_embedded_by_tutte(void **state)
 {
     (void)state;
@@ -331,6 +357,7 @@ static void names_are_known_for_every_value(void **state)
     assert_string_equal(sl_flatten_method_name((sl_flatten_method)99), "unknown");
     assert_string_equal(sl_flatten_verdict_name(SL_CHART_VALID), "valid");
     assert_string_equal(sl_flatten_verdict_name(SL_CHART_STRETCHED), "stretched");
+    assert_string_equal(sl_flatten_verdict_name(SL_CHART_SHEARED), "sheared");
     assert_string_equal(sl_flatten_verdict_name((sl_flatten_verdict)99), "unknown");
 }
 
@@ -344,6 +371,7 @@ int main(void)
         cmocka_unit_test(spikes_fail_in_abf_and_are_saved_by_tutte),
         cmocka_unit_test(stretched_charts_are_said_so_or_mended),
         cmocka_unit_test(mild_stretch_is_refined_from_abf),
+        cmocka_unit_test(a_chart_within_its_stretch_may_still_be_sheared),
         cmocka_unit_test(a_ramp_overlaps_by_abf_and_is_embedded_by_tutte),
         cmocka_unit_test(a_single_facet_is_exempt_from_the_bound),
         cmocka_unit_test(facets_without_area_become_points),
