@@ -10,7 +10,7 @@ enum { MAX_SOLVERS = 20, MAX_CASES = 64 };
 static const double RESIDUAL = 1e-8;       /* ||A v - lambda v|| <= RESIDUAL ||A||_1 */
 static const double SIGNS_RESIDUAL = 2e-3; /* ||A v - lambda v|| <= SIGNS_RESIDUAL lambda */
 static const double AGREE = 1e-8;          /* eigenvalues, in ||A||_1 */
-static const double LEAST_TOLERANCE = 1e-15;
+static const double LEAST_TOLERANCE = 1e-15, TIGHTER = 0.316;
 
 /* A competitor in one mode. */
 typedef struct entry {
@@ -94,7 +94,7 @@ static void calibrate(const bench *b, entry *e, int descriptor)
     e->ok = false;
     const double given = b->signs ? SIGNS_RESIDUAL : RESIDUAL;
     for (double tolerance = e->solver->ours ? given : (e->first > 0.0 ? e->first : (b->signs ? 1e-2 : 1e-4));
-         tolerance >= LEAST_TOLERANCE && !e->ok; tolerance *= 0.1) {
+         tolerance >= LEAST_TOLERANCE && !e->ok; tolerance *= TIGHTER) {
         e->tolerance = tolerance;
         run_once(b, e, descriptor);
         e->ok = meets(b, &e->last);
@@ -104,7 +104,7 @@ static void calibrate(const bench *b, entry *e, int descriptor)
     }
     if (e->ok) {
         keep_run(e);
-        e->first = e->tolerance * 10.0;
+        e->first = e->tolerance / TIGHTER;
     } else {
         snprintf(e->message, sizeof e->message, "%s", e->last.ok ? "residual too large" : e->last.message);
     }
