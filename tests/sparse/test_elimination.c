@@ -148,7 +148,12 @@ static void check_partition(const sl_csc *A, const analysis *a, const sl_partiti
             }
         }
         const int32_t width = part->first[s + 1] - part->first[s], stored = width * (width + 1) / 2 + width * below;
-        assert_true(stored - entries <= (width <= 4 ? 1.0 : width <= 16 ? 0.8 : width <= 48 ? 0.1 : 0.05) * stored);
+        assert_true(stored - entries <= (width <= 4    ? 0.5
+                                         : width <= 8  ? 0.4
+                                         : width <= 16 ? 0.25
+                                         : width <= 48 ? 0.1
+                                                       : 0.03) *
+                                            stored);
         assert_int_equal(below, part->below[s]);
         assert_int_equal(below == 0, part->parent[s] == -1);
     }

@@ -181,6 +181,126 @@ static void dissection_fills_a_grid_little_more_than_minimum_degree(void **state
     sl_csc_free(A);
 }
 
+/* Leaves keep their nodes and places, separators their order. */
+static void ordered_leaves_are_the_same_leaves(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x1eaf);
+    for (int trial = 0; trial < 6 * test_multiplier(); trial++) {
+        grid g = grid_create(20 + test_index(&rng, 6), 1, false, &rng);
+        int32_t *piece = sl_alloc(g.n, sizeof *piece), *order = sl_alloc(g.n, sizeof *order), *before;
+        bool complete = false, moved = false;
+        assert_true(piece != NULL && order != NULL);
+        assert_int_equal(sl_dissect(&g.graph, trial % 2 == 0 ? g.xyz : NULL, piece, order), SL_OK);
+        before = sl_copy(order, g.n, sizeof *order);
+        assert_non_null(before);
+        assert_int_equal(sl_order_leaves(&g.graph, piece, order, &complete), SL_OK);
+        assert_true(complete);
+        assert_permutation(order, g.n);
+        for (int32_t k = 0; k < g.n; k++) {
+            bool separates = false;
+            for (int64_t p = g.graph.first[order[k]]; p < g.graph.first[order[k] + 1]; p++) {
+                separates = separates || piece[g.graph.adj[p]] < piece[order[k]];
+            }
+            assert_int_equal(piece[order[k]], piece[before[k]]);
+            assert_true(!separates || order[k] == before[k]);
+            moved = moved || order[k] != before[k];
+        }
+        assert_true(moved);
+        sl_free(piece);
+        sl_free(order);
+        sl_free(before);
+        grid_clear(&g);
+    }
+}
+
+/* A leaf that is a tree is eliminated without fill: each node has at most one neighbour left when its turn comes. */
+static void leaves_that_are_trees_are_eliminated_from_their_ends(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x74ee);
+    for (int trial = 0; trial < 50 * test_multiplier(); trial++) {
+        const int32_t n = 1 + test_index(&rng, 128);
+        sl_csc *A = random_spd(MATRIX_TREE, n, 0.3, &rng);
+        sl_adjacency graph = {.n = n};
+        int32_t *piece = sl_calloc(n, sizeof *piece), *order = sl_alloc(n, sizeof *order);
+        int32_t *place = sl_alloc(n, sizeof *place);
+        bool complete;
+        graph.first = sl_calloc((int64_t)n + 1, sizeof *graph.first);
+        graph.adj = sl_alloc(2 * (int64_t)n, sizeof *graph.adj);
+        assert_true(piece && order && place && graph.first && graph.adj);
+        int64_t filled = 0;
+        for (int32_t v = 0; v < n; v++) {
+            order[v] = v;
+            for (int32_t j = 0; j < n; j++) {
+                for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
+                    if (j == v || A->row[p] == v) {
+                        graph.adj[filled++] = j == v ? A->row[p] : j;
+                    }
+                }
+            }
+            graph.first[v + 1] = filled;
+        }
+        assert_int_equal(sl_order_leaves(&graph, piece, order, &complete), SL_OK);
+        assert_true(complete);
+        assert_permutation(order, n);
+        for (int32_t k = 0; k < n; k++) {
+            place[order[k]] = k;
+        }
+        for (int32_t v = 0; v < n; v++) {
+            int32_t later = 0;
+            for (int64_t p = graph.first[v]; p < graph.first[v + 1]; p++) {
+                later += place[graph.adj[p]] > place[v];
+            }
+            assert_true(later <= 1);
+        }
+        sl_free(piece);
+        sl_free(order);
+        sl_free(place);
+        sl_adjacency_clear(&graph);
+        sl_csc_free(A);
+    }
+}
+
+static void inherited_orderings_keep_the_order_of_the_whole(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x1e41);
+    for (int trial = 0; trial < 100 * test_multiplier(); trial++) {
+        const int32_t n = 1 + test_index(&rng, 90);
+        int32_t whole[90], subset[90], perm[90], place[90], count = 0;
+        for (int32_t i = 0; i < n; i++) { /* two shuffles */
+            const int32_t k = test_index(&rng, i + 1);
+            whole[i] = whole[k];
+            whole[k] = i;
+            if (test_index(&rng, 3) > 0) {
+                const int32_t at = test_index(&rng, count + 1);
+                subset[count++] = subset[at];
+                subset[at] = i;
+            }
+        }
+        assert_int_equal(sl_order_inherit(n, whole, count, subset, perm), SL_OK);
+        assert_permutation(perm, count);
+        for (int32_t k = 0; k < n; k++) {
+            place[whole[k]] = k;
+        }
+        for (int32_t k = 1; k < count; k++) {
+            assert_true(place[subset[perm[k - 1]]] < place[subset[perm[k]]]);
+        }
+    }
+    const int32_t whole[] = {2, 0, 1}, twice[] = {2, 0, 2}, beyond[] = {3, 0, 1};
+    const int32_t good[] = {1, 2}, repeated[] = {1, 1}, outside[] = {1, 3}, negative[] = {-1, 1};
+    int32_t perm[3];
+    assert_int_equal(sl_order_inherit(3, whole, 2, repeated, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, whole, 2, outside, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, whole, 2, negative, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, whole, -1, good, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, twice, 2, good, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, beyond, 2, good, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(1, whole, 2, good, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_inherit(3, whole, 0, good, perm), SL_OK);
+}
+
 static void bad_patterns_and_points_are_bad_input(void **state)
 {
     (void)state;
@@ -272,6 +392,9 @@ int main(void)
         cmocka_unit_test(every_ordering_is_a_permutation),
         cmocka_unit_test(dissection_halves_a_grid_by_a_small_separator),
         cmocka_unit_test(dissection_fills_a_grid_little_more_than_minimum_degree),
+        cmocka_unit_test(ordered_leaves_are_the_same_leaves),
+        cmocka_unit_test(leaves_that_are_trees_are_eliminated_from_their_ends),
+        cmocka_unit_test(inherited_orderings_keep_the_order_of_the_whole),
         cmocka_unit_test(bad_patterns_and_points_are_bad_input),
         cmocka_unit_test(vertex_covers_are_minimum),
     };
