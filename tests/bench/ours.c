@@ -50,13 +50,19 @@ static bool solve_eigen(void *state, bench_eigen_run *run)
     }
     sl_lanczos_def def = sl_lanczos_default();
     def.count = run->pairs;
-    def.tolerance = run->tolerance;
+    if (run->signs) {
+        def.mode = SL_LANCZOS_SIGNS;
+        def.sign_tolerance = run->tolerance;
+    } else {
+        def.tolerance = run->tolerance;
+    }
     def.null_space = o->null_space;
     def.null_count = 1;
     def.xyz = o->matrix->xyz;
     const sl_status status =
         sl_lanczos_solve(&o->matrix->A, &def, &o->context, run->lambda, o->vectors, NULL, &o->info);
     run->solves = o->info.solves;
+    run->certified = o->info.certified;
     run->error = status != SL_OK ? sl_status_name(status) : "not converged";
     return status == SL_OK && o->info.converged;
 }
