@@ -363,6 +363,15 @@ int64_t sl_cholesky_nnz(const sl_cholesky *F)
     return sum;
 }
 
+int64_t sl_cholesky_factor_bytes(const sl_cholesky *F, int64_t *kept)
+{
+    const int64_t signs = F->kind == SL_FACTOR_LDLT ? F->n : 0;
+    const int64_t stays = F->panel[F->supernodes] * (int64_t)sizeof *F->L + signs;
+    const int64_t doubles = F->max_update + sl_front_spare(F->max_width);
+    *kept = stays;
+    return stays + doubles * (int64_t)sizeof(double) + F->max_family * (int64_t)sizeof(int32_t);
+}
+
 int32_t sl_cholesky_top_first(const sl_cholesky *F)
 {
     return F->first[F->bottom];

@@ -106,6 +106,11 @@ SL_NODISCARD sl_status sl_inertia(const sl_cholesky *F, const sl_csc *A, double 
 int64_t sl_cholesky_nnz(const sl_cholesky *F);
 const int32_t *sl_cholesky_permutation(const sl_cholesky *F);
 
+/* Bytes that a first sl_cholesky_factor of this analysis will allocate with one worker, and the part of them that L
+ * keeps: an estimate before allocating. More workers take the rest once more each, and what the subtrees leave for the
+ * crown of the tree until it is used. */
+int64_t sl_cholesky_factor_bytes(const sl_cholesky *F, int64_t *kept);
+
 void sl_cholesky_free(sl_cholesky *F); /* NULL is a no-op */
 
 #endif

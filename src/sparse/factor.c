@@ -18,9 +18,10 @@ sl_status sl_check_values(const sl_cholesky *F, const sl_csc *A, double sigma, d
             if (!isfinite(a)) {
                 return SL_BAD_INPUT;
             }
-            *largest = fmax(*largest, fabs(a));
+            *largest = fabs(a) > *largest ? fabs(a) : *largest;
         }
-        *largest_diagonal = fmax(*largest_diagonal, fabs(A->val[A->colptr[j]] - sigma));
+        const double diagonal = fabs(A->val[A->colptr[j]] - sigma);
+        *largest_diagonal = diagonal > *largest_diagonal ? diagonal : *largest_diagonal;
     }
     return SL_OK;
 }

@@ -33,7 +33,7 @@ static void scan_columns(const double *panel, int32_t width, int32_t below, doub
         for (int32_t i = k + 1; i < width; i++) {
             const double size = fabs(panel[sl_own_place(width, i, k)]);
             sum[k] += size;
-            largest[k] = fmax(largest[k], size);
+            largest[k] = size > largest[k] ? size : largest[k];
         }
     }
     const double *slab = panel + sl_own_size(width);
@@ -43,7 +43,7 @@ static void scan_columns(const double *panel, int32_t width, int32_t below, doub
             for (int32_t r = 0; r < rows; r++) {
                 const double size = fabs(*slab++);
                 sum[k] += size;
-                largest[k] = fmax(largest[k], size);
+                largest[k] = size > largest[k] ? size : largest[k];
             }
         }
     }

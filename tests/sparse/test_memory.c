@@ -12,6 +12,7 @@ void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *memory, size_t size);
 
+static _Atomic int64_t allocated; /* bytes asked for */
 static atomic_int countdown = -1; /* allocations left before one fails; negative = never */
 
 static bool fails(void)
@@ -21,6 +22,7 @@ static bool fails(void)
 
 void *__wrap_malloc(size_t size)
 {
+    atomic_fetch_add(&allocated, (int64_t)size);
     return fails() ? NULL : __real_malloc(size);
 }
 
@@ -121,6 +123,30 @@ static void workers_survive_failed_allocations(void **state)
     sl_thread_pool_free(pool);
 }
 
+static void the_factor_takes_the_bytes_foretold(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3e5);
+    for (int kind = 0; kind < MATRIX_KINDS; kind++) {
+        sl_csc *A = random_spd((matrix_kind)kind, 300, 0.3, &rng);
+        sl_cholesky_def def = sl_cholesky_default();
+        sl_cholesky *F = NULL;
+        int64_t kept;
+        def.kind = kind % 2 == 0 ? SL_FACTOR_LLT : SL_FACTOR_LDLT;
+        assert_int_equal(sl_cholesky_analyze(A, &def, &F), SL_OK);
+        const int64_t foretold = sl_cholesky_factor_bytes(F, &kept);
+        atomic_store(&allocated, 0);
+        assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK);
+        assert_true(kept >= 8 * sl_cholesky_nnz(F) && kept < foretold);
+        assert_in_range(atomic_load(&allocated), foretold, foretold + 16); /* empty arrays take a byte */
+        atomic_store(&allocated, 0);
+        assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK);
+        assert_in_range(atomic_load(&allocated), foretold - kept, foretold - kept + 16);
+        sl_cholesky_free(F);
+        sl_csc_free(A);
+    }
+}
+
 static void inherited_orderings_report_memory_too(void **state)
 {
     (void)state;
@@ -139,6 +165,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_failed_allocation_is_told_and_leaves_nothing_behind),
         cmocka_unit_test(workers_survive_failed_allocations),
+        cmocka_unit_test(the_factor_takes_the_bytes_foretold),
         cmocka_unit_test(inherited_orderings_report_memory_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
