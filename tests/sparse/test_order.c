@@ -262,6 +262,67 @@ static void leaves_that_are_trees_are_eliminated_from_their_ends(void **state)
     }
 }
 
+static int32_t degree_of(bool joined[100][100], const bool *gone, int32_t n, int32_t v)
+{
+    int32_t degree = 0;
+    for (int32_t u = 0; u < n; u++) {
+        degree += u != v && !gone[u] && joined[v][u];
+    }
+    return degree;
+}
+
+/* v goes; its neighbours are joined. */
+static void eliminate_densely(bool joined[100][100], bool *gone, int32_t n, int32_t v)
+{
+    gone[v] = true;
+    for (int32_t a = 0; a < n; a++) {
+        for (int32_t b = 0; b < n; b++) {
+            joined[a][b] = joined[a][b] || (!gone[a] && !gone[b] && joined[v][a] && joined[v][b]);
+        }
+    }
+}
+
+static void leaves_are_eliminated_by_least_degree_and_twins_at_once(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x1eade);
+    for (int trial = 0; trial < 40 * test_multiplier(); trial++) {
+        static bool joined[100][100];
+        const int32_t n = 2 + test_index(&rng, 98), edges = n + test_index(&rng, 2 * n);
+        int64_t first[101] = {0};
+        int32_t adj[10000], piece[100] = {0}, order[100];
+        bool gone[100] = {false}, complete;
+        memset(joined, 0, sizeof joined);
+        for (int32_t e = 0; e < edges; e++) {
+            const int32_t a = test_index(&rng, n), b = test_index(&rng, n);
+            joined[a][b] = joined[b][a] = a != b;
+        }
+        for (int32_t v = 0; v < n; v++) {
+            order[v] = v;
+            first[v + 1] = first[v];
+            for (int32_t u = 0; u < n; u++) {
+                if (joined[v][u]) {
+                    adj[first[v + 1]++] = u;
+                }
+            }
+        }
+        const sl_adjacency graph = {n, first, adj};
+        assert_int_equal(sl_order_leaves(&graph, piece, order, &complete), SL_OK);
+        assert_permutation(order, n);
+        int32_t pivot_degree = -1; /* of the last that was chosen, less its twins */
+        for (int32_t k = 0; k < n; k++) {
+            const int32_t degree = degree_of(joined, gone, n, order[k]);
+            bool least = true, twin = k > 0 && degree == pivot_degree - 1;
+            for (int32_t u = 0; u < n; u++) {
+                least = least && (gone[u] || degree_of(joined, gone, n, u) >= degree);
+            }
+            assert_true(least || twin);
+            pivot_degree = degree;
+            eliminate_densely(joined, gone, n, order[k]);
+        }
+    }
+}
+
 static void inherited_orderings_keep_the_order_of_the_whole(void **state)
 {
     (void)state;
@@ -394,6 +455,7 @@ int main(void)
         cmocka_unit_test(dissection_fills_a_grid_little_more_than_minimum_degree),
         cmocka_unit_test(ordered_leaves_are_the_same_leaves),
         cmocka_unit_test(leaves_that_are_trees_are_eliminated_from_their_ends),
+        cmocka_unit_test(leaves_are_eliminated_by_least_degree_and_twins_at_once),
         cmocka_unit_test(inherited_orderings_keep_the_order_of_the_whole),
         cmocka_unit_test(bad_patterns_and_points_are_bad_input),
         cmocka_unit_test(vertex_covers_are_minimum),

@@ -3,6 +3,8 @@
 #include "sparse/cholesky.h"
 #include "sparse/cholesky_internal.h"
 
+#include <math.h>
+
 static const int32_t workers[] = {1, 2, 5};
 
 /* A jittered grid with its points: large enough for tasks. */
@@ -154,6 +156,58 @@ static void the_first_bad_pivot_is_told_whatever_the_workers(void **state)
     sl_csc_free(A);
 }
 
+/* The bound from a stored factor, row by row: gamma |L| |L'| e. */
+static double bound_from_factor(const sl_cholesky *F)
+{
+    double *sum = sl_calloc(F->n, sizeof *sum), largest = 0.0;
+    int32_t *length = sl_calloc(F->n, sizeof *length);
+    assert_true(sum != NULL && length != NULL);
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
+        for (int32_t k = 0; k < width; k++) {
+            double column = 0.0;
+            for (int pass = 0; pass < 2; pass++) { /* the column's sum, then what it adds to the rows */
+                for (int32_t i = k; i < width + below; i++) {
+                    const int32_t r = i >= width ? F->below[F->below_first[s] + i - width] : F->first[s] + i;
+                    const int32_t row = r >= 0 ? r : F->outside[F->outside_first[F->task[s]] - 1 - r];
+                    const int64_t at = i < width ? sl_own_place(width, i, k)
+                                                 : sl_own_size(width) + sl_below_place(width, below, i - width, k);
+                    const double stored = fabs(F->L[F->panel[s] + at]), l = i == k ? 1.0 / stored : stored;
+                    column += pass == 0 ? l : 0.0;
+                    sum[row] += pass == 1 ? l * column : 0.0;
+                    length[row] += pass;
+                }
+            }
+        }
+    }
+    for (int32_t i = 0; i < F->n; i++) {
+        largest = fmax(largest, (length[i] + 4.0) * 0.5 * TEST_EPS * sum[i]);
+    }
+    sl_free(sum);
+    sl_free(length);
+    return largest;
+}
+
+static void error_bounds_are_those_of_the_stored_factor(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xe44);
+    double *xyz;
+    sl_csc *A = grid_with_points(125, &rng, &xyz);
+    sl_cholesky *F = analysis_of(A, xyz, SL_FACTOR_LDLT);
+    for (int trial = 0; trial < 4; trial++) {
+        const double sigma = test_uniform(&rng, -0.1, 0.2);
+        sl_inertia_info info;
+        assert_int_equal(sl_inertia(F, A, sigma, NULL, &info), SL_OK);
+        assert_int_equal(sl_cholesky_factor_shifted(F, A, sigma, NULL, NULL), SL_OK);
+        const double bound = bound_from_factor(F) + 0.5 * TEST_EPS * info.max_a;
+        assert_true(fabs(info.backward_error / bound - 1.0) < 1e-9);
+    }
+    sl_cholesky_free(F);
+    sl_free(xyz);
+    sl_csc_free(A);
+}
+
 /* Each row below a supernode of a task is in the task or in its list of rows outside; the tasks are apart. */
 static void tasks_are_whole_subtrees(void **state)
 {
@@ -200,6 +254,7 @@ int main(void)
         cmocka_unit_test(any_number_of_workers_gives_the_same_bytes),
         cmocka_unit_test(solutions_by_tasks_have_small_residuals),
         cmocka_unit_test(the_first_bad_pivot_is_told_whatever_the_workers),
+        cmocka_unit_test(error_bounds_are_those_of_the_stored_factor),
         cmocka_unit_test(tasks_are_whole_subtrees),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
