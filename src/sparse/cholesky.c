@@ -344,6 +344,8 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     SL_TRY(sl_partition_create(F->n, w.parent, w.count, &w.partition));
     SL_TRY(adopt_partition(F, def->patch, &w));
     SL_TRY(analyze_rows(F, A, &w));
+    F->place = w.place;
+    w.place = NULL;
     *out = F;
 cleanup:
     scratch_clear(&w);
@@ -388,6 +390,7 @@ void sl_cholesky_free(sl_cholesky *F)
         return;
     }
     sl_free(F->perm);
+    sl_free(F->place);
     sl_free(F->first);
     sl_free(F->parent);
     sl_free(F->below_first);

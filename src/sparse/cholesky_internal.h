@@ -6,8 +6,9 @@
 #include "sparse/cholesky.h"
 #include "sparse/kernels.h"
 
-/* Right-hand sides are solved for in groups of this many: their rows fill a cache line. */
-#define SL_SOLVE_WIDTH 8
+/* Right-hand sides are solved for in groups of this many: their rows fill two cache lines, and L comes from memory once
+ * for both. */
+#define SL_SOLVE_WIDTH 16
 
 /* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel (laid out as kernels.h says) has one row for
  * each of these columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending.
@@ -20,7 +21,8 @@ struct sl_cholesky {
     double pivot_rtol;
     sl_factor_kind kind;
     const sl_kernels *kernels;
-    int32_t *perm; /* n: row k of P A P' is row perm[k] of A */
+    int32_t *perm;  /* n: row k of P A P' is row perm[k] of A */
+    int32_t *place; /* n: its inverse */
 
     int32_t supernodes;
     int32_t bottom;       /* supernodes of the bottom part */

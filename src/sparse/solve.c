@@ -137,23 +137,45 @@ void sl_cholesky_backward_part(const sl_cholesky *F, sl_part part, double *X, in
     sl_parallel_for(context, F->task_count, 1, backward_task, &p);
 }
 
-void sl_cholesky_permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
+/* Unknowns are taken in A's order: the columns of X are then read and written in one sweep each, and only whole rows of
+ * Y, a cache line of eight sides, are at random. */
+static inline void permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
 {
     const int64_t n = F->n;
-    for (int64_t k = 0; k < n; k++) {
+    for (int64_t i = 0; i < n; i++) {
+        double *row = Y + (int64_t)F->place[i] * w;
         for (int32_t c = 0; c < w; c++) {
-            Y[k * w + c] = X[c * n + F->perm[k]];
+            row[c] = X[c * n + i];
         }
+    }
+}
+
+static inline void permute_out(const sl_cholesky *F, const double *Y, int32_t w, double *X)
+{
+    const int64_t n = F->n;
+    for (int64_t i = 0; i < n; i++) {
+        const double *row = Y + (int64_t)F->place[i] * w;
+        for (int32_t c = 0; c < w; c++) {
+            X[c * n + i] = row[c];
+        }
+    }
+}
+
+void sl_cholesky_permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
+{
+    if (w == SL_SOLVE_WIDTH) {
+        permute_in(F, X, SL_SOLVE_WIDTH, Y); /* the compiler knows the width */
+    } else {
+        permute_in(F, X, w, Y);
     }
 }
 
 void sl_cholesky_permute_out(const sl_cholesky *F, const double *Y, int32_t w, double *X)
 {
-    const int64_t n = F->n;
-    for (int64_t k = 0; k < n; k++) {
-        for (int32_t c = 0; c < w; c++) {
-            X[c * n + F->perm[k]] = Y[k * w + c];
-        }
+    if (w == SL_SOLVE_WIDTH) {
+        permute_out(F, Y, SL_SOLVE_WIDTH, X);
+    } else {
+        permute_out(F, Y, w, X);
     }
 }
 
