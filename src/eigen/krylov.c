@@ -387,25 +387,42 @@ static sl_status solve_matrix(sl_krylov *k)
     return info == 0 ? SL_OK : SL_INTERNAL;
 }
 
-sl_status sl_krylov_ritz(sl_krylov *k, int32_t count)
+/* Puts the leading pairs first; they come ascending, so what leads stands at either end. */
+static void order_pairs(sl_krylov *k)
 {
     const int32_t m = k->applied;
-    k->found = count < m ? count : m;
-    const sl_status status = solve_matrix(k);
-    for (int32_t a = 0, b = m - 1; a < b && status == SL_OK; a++, b--) {
-        const double t = k->theta[a];
-        k->theta[a] = k->theta[b];
-        k->theta[b] = t;
-        for (int32_t i = 0; i < m; i++) {
-            const double u = k->S[(int64_t)a * m + i];
-            k->S[(int64_t)a * m + i] = k->S[(int64_t)b * m + i];
-            k->S[(int64_t)b * m + i] = u;
-        }
+    int32_t low = 0, high = m - 1;
+    double *theta = k->lapack; /* done with */
+    for (int32_t j = 0; j < m; j++) {
+        const bool take_low = k->both_ends && fabs(k->theta[low]) > fabs(k->theta[high]);
+        const int32_t from = take_low ? low++ : high--;
+        theta[j] = k->theta[from];
+        memcpy(k->copy + (int64_t)j * m, k->S + (int64_t)from * m, (size_t)m * sizeof *k->S);
     }
+    memcpy(k->theta, theta, (size_t)m * sizeof *theta);
+    memcpy(k->S, k->copy, (size_t)m * (size_t)m * sizeof *k->S);
+}
+
+sl_status sl_krylov_ritz(sl_krylov *k, int32_t count)
+{
+    k->found = count < k->applied ? count : k->applied;
+    const sl_status status = solve_matrix(k);
     if (status == SL_OK) {
+        order_pairs(k);
         measure_last(k);
     }
     return status;
+}
+
+void sl_krylov_select(sl_krylov *k, const int32_t *index, int32_t count)
+{
+    const int64_t m = k->applied;
+    for (int32_t j = 0; j < count; j++) {
+        k->theta[j] = k->theta[index[j]];
+        k->last[j] = k->last[index[j]];
+        memmove(k->S + j * m, k->S + index[j] * m, (size_t)m * sizeof *k->S);
+    }
+    k->found = count;
 }
 
 /* copy (rows x count, column-major) = S moved down by the fixed columns, with B s / theta under it if extended. */

@@ -24,6 +24,7 @@ typedef struct sl_krylov {
     int32_t fixed, applied, pending;
     int32_t block, w; /* pending columns at full width; columns OP is applied to at once: 4 or 8 */
     int32_t max_basis;
+    bool both_ends; /* leading Ritz values are the largest in magnitude, not the largest */
     sl_operator_fn *apply;
     void *user;
     const sl_context *context; /* borrowed */
@@ -56,6 +57,9 @@ void sl_krylov_expand(sl_krylov *k);
 
 /* The leading Ritz pairs: min(count, applied) of them. SL_INTERNAL when LAPACK fails. */
 SL_NODISCARD sl_status sl_krylov_ritz(sl_krylov *k, int32_t count);
+
+/* Makes the Ritz pairs index[0] < index[1] < ... the leading ones; the others are forgotten. */
+void sl_krylov_select(sl_krylov *k, const int32_t *index, int32_t count);
 
 /* X := the leading `count` Ritz vectors plus P B s / theta, that is OP x / theta: an inverse iteration for nothing.
  * X: nullable; if NULL they take the place of the basis's first columns, which is then spent. SL_OUT_OF_MEMORY. */

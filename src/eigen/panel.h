@@ -96,4 +96,9 @@ SL_NODISCARD sl_status sl_panels_grams(const sl_panels *M, int32_t columns, cons
 SL_NODISCARD sl_status sl_panels_residuals(const sl_panels *M, int32_t columns, const sl_rows *A, const double *lambda,
                                            double *norm, const sl_context *context);
 
+/* ritz.c: rotates the first m columns of X to the eigenvectors of A within their span, orthonormal, lambda ascending
+ * (values within rounding of norm = ||A|| become 0), and gives their residuals. SL_OUT_OF_MEMORY, SL_INTERNAL. */
+SL_NODISCARD sl_status sl_panels_rayleigh_ritz(sl_panels *X, int32_t m, const sl_rows *A, double norm, double *lambda,
+                                               double *residual, const sl_context *context);
+
 #endif

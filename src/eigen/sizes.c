@@ -12,7 +12,7 @@ static const int32_t wide_block_order = 100000;
 
 /* The skeleton pays from these orders on. */
 static const int32_t skeleton_order_signs = 20000;
-static const int32_t skeleton_order_tolerance = 200000;
+static const int32_t skeleton_order_tolerance = 150000;
 
 /* lambda_k of a surface's facet graph is about this times k / n (Weyl's law; measured on closed surfaces). */
 static const double weyl_slope = 6.5;
@@ -20,6 +20,9 @@ static const double weyl_slope = 6.5;
 /* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(5/4) in vectors
  * of eigenvalue lambda after one inverse iteration. */
 static const double skeleton_error = 1.1e-3, skeleton_reach = 0.18, skeleton_power = 1.25;
+
+/* Of the allowed error that the patches may use up. */
+static const double patch_safety = 0.35;
 
 enum { LEAST_PATCH = 64, MOST_PATCH = 2048 };
 
@@ -43,7 +46,7 @@ static int32_t choose_patch(const sl_lanczos *s)
     const double allowed =
         s->def.mode == SL_LANCZOS_SIGNS ? s->def.sign_tolerance : s->def.tolerance * s->norm / lambda;
     const double patch =
-        skeleton_reach / lambda * pow(0.5 * fmin(allowed, 1e-2) / skeleton_error, 1.0 / skeleton_power);
+        skeleton_reach / lambda * pow(patch_safety * fmin(allowed, 1e-2) / skeleton_error, 1.0 / skeleton_power);
     return (int32_t)fmax(LEAST_PATCH, fmin(MOST_PATCH, patch));
 }
 

@@ -59,19 +59,9 @@ static sl_status spectrum_allocate(int32_t n, int32_t count, sl_spectrum **out)
     return s->lambda == NULL || s->residual == NULL || s->vectors == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 }
 
-/**
- * The `count` smallest eigenpairs of a facet graph's Laplacian.
- *
- * @param[in]  graph    facet graph; its centroids steer the fill-reducing ordering
- * @param[in]  count    pairs wanted, the null space included; clipped to the number of nodes
- * @param[in]  context  nullable
- * @param[out] out      owned by the caller; NULL on failure
- *
- * SL_OUT_OF_MEMORY; SL_CANCELLED; SL_INTERNAL (LAPACKE failed, or the matrix is no Laplacian). Not converging is no
- * error: see info. A graph of more components than `count` gives that many null vectors only. Same bytes for any number
- * of threads.
- */
-sl_status sl_spectrum_compute(const sl_facet_graph *graph, int32_t count, const sl_context *context, sl_spectrum **out)
+/* The pairs to the precision of `mode`. */
+static sl_status compute(const sl_facet_graph *graph, int32_t count, sl_lanczos_mode mode, const sl_context *context,
+                         sl_spectrum **out)
 {
     sl_status status = SL_OK;
     sl_csc *A = NULL;
@@ -81,6 +71,7 @@ sl_status sl_spectrum_compute(const sl_facet_graph *graph, int32_t count, const 
     sl_lanczos_def def = sl_lanczos_default();
     *out = NULL;
     def.count = count < n ? count : n;
+    def.mode = mode;
     SL_TRY(sl_laplacian_create(&graph->graph, &A));
     SL_TRY(null_space_create(&graph->graph, &null_space, &def.null_count));
     SL_TRY(spectrum_allocate(n, def.count, &s));
@@ -100,6 +91,29 @@ cleanup:
     sl_free(null_space);
     sl_csc_free(A);
     return status;
+}
+
+/**
+ * The `count` smallest eigenpairs of a facet graph's Laplacian.
+ *
+ * @param[in]  graph    facet graph; its centroids steer the fill-reducing ordering
+ * @param[in]  count    pairs wanted, the null space included; clipped to the number of nodes
+ * @param[in]  context  nullable
+ * @param[out] out      owned by the caller; NULL on failure
+ *
+ * SL_OUT_OF_MEMORY; SL_CANCELLED; SL_INTERNAL (LAPACKE failed, or the matrix is no Laplacian). Not converging is no
+ * error: see info. A graph of more components than `count` gives that many null vectors only. Same bytes for any number
+ * of threads.
+ */
+sl_status sl_spectrum_compute(const sl_facet_graph *graph, int32_t count, const sl_context *context, sl_spectrum **out)
+{
+    return compute(graph, count, SL_LANCZOS_TOLERANCE, context, out);
+}
+
+sl_status sl_spectrum_compute_signs(const sl_facet_graph *graph, int32_t count, const sl_context *context,
+                                    sl_spectrum **out)
+{
+    return compute(graph, count, SL_LANCZOS_SIGNS, context, out);
 }
 
 void sl_spectrum_free(sl_spectrum *spectrum)

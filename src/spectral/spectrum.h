@@ -23,6 +23,11 @@ typedef struct sl_spectrum {
  * known null space. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
 SL_NODISCARD sl_status sl_spectrum_compute(const sl_facet_graph *graph, int32_t count, const sl_context *context,
                                            sl_spectrum **out);
+
+/* The same pairs, only as precise as the signs of their vectors need (SL_LANCZOS_SIGNS): for cuts, at about half the
+ * price. The same statuses. */
+SL_NODISCARD sl_status sl_spectrum_compute_signs(const sl_facet_graph *graph, int32_t count, const sl_context *context,
+                                                 sl_spectrum **out);
 void sl_spectrum_free(sl_spectrum *spectrum); /* NULL is a no-op */
 
 /* The bipartition of one eigenvector: F+ = {v >= 0}, F- = {v < 0}. */

@@ -107,6 +107,34 @@ static void every_component_has_its_own_null_vector(void **state)
     sl_mesh_free(mesh);
 }
 
+/* Values to a part in 100,000 (errors are squares of the vectors'), sides equal where vectors are not small. */
+static void signs_are_those_of_the_precise_spectrum(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x519);
+    sl_mesh *mesh = test_spiky_mesh(&rng, 4, 5, 0.8, TEST_TRIANGLES);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    sl_spectrum *precise = NULL, *rough = NULL;
+    assert_int_equal(sl_spectrum_compute(graph, 15, NULL, &precise), SL_OK);
+    assert_int_equal(sl_spectrum_compute_signs(graph, 15, NULL, &rough), SL_OK);
+    assert_true(rough->info.converged && rough->info.max_relative <= 2e-3);
+    for (int32_t k = 1; k < 15; k++) {
+        const double gap =
+            k < 14 ? fmin(precise->lambda[k + 1] - precise->lambda[k], precise->lambda[k] - precise->lambda[k - 1])
+                   : 0.0;
+        assert_true(test_near(rough->lambda[k] / precise->lambda[k], 1.0, 1e-5));
+        for (int32_t i = 0; i < precise->n && gap > 0.05 * precise->lambda[k]; i++) {
+            const double a = precise->vectors[(int64_t)k * precise->n + i];
+            const double b = rough->vectors[(int64_t)k * precise->n + i];
+            assert_true(fabs(a) < 0.1 / sqrt(precise->n) || a * b > 0.0);
+        }
+    }
+    sl_spectrum_free(precise);
+    sl_spectrum_free(rough);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
 static bool cancel(void *user, const char *stage, double fraction)
 {
     (void)user;
@@ -136,6 +164,7 @@ int main(void)
         cmocka_unit_test(smallest_eigenvalues_agree_with_the_dense_solver),
         cmocka_unit_test(count_is_clipped_to_the_number_of_nodes),
         cmocka_unit_test(every_component_has_its_own_null_vector),
+        cmocka_unit_test(signs_are_those_of_the_precise_spectrum),
         cmocka_unit_test(a_cancelled_spectrum_is_not_delivered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
