@@ -215,7 +215,9 @@ static int32_t factor_panel(const walker *w, shared_front *f, sl_pivoting pivoti
 {
     int32_t bad = -1;
     f->kernels->open(f->panel, f->width, f->below, f->spare);
-    memset(f->sign != NULL ? f->sign : (int8_t *)f->spare, 1, f->sign != NULL ? (size_t)f->width : 0);
+    if (f->sign != NULL) {
+        memset(f->sign, 1, (size_t)f->width); /* columns yet to come count as positive */
+    }
     for (f->begin = 0; f->begin < f->width && bad == -1; f->begin += SL_KERNEL_DEPTH) {
         bad = f->kernels->columns(f->panel, f->width, f->below, f->begin, pivoting, f->sign, f->spare);
         const int32_t pairs = bad == -1 ? sl_trail_pairs(f->width, f->below, f->begin) : 0;
