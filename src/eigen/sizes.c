@@ -17,14 +17,14 @@ static const int32_t skeleton_order_tolerance = 150000;
 /* lambda_k of a surface's facet graph is about this times k / n (Weyl's law; measured on closed surfaces). */
 static const double weyl_slope = 6.5;
 
-/* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(5/4) in vectors
+/* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(7/4) in vectors
  * of eigenvalue lambda after one inverse iteration. */
-static const double skeleton_error = 1.1e-3, skeleton_reach = 0.18, skeleton_power = 1.25;
+static const double skeleton_error = 1.05e-3, skeleton_reach = 0.18, skeleton_power = 1.75;
 
 /* Of the allowed error that the patches may use up. */
-static const double patch_safety = 0.35;
+static const double patch_safety = 0.6;
 
-enum { LEAST_PATCH = 64, MOST_PATCH = 2048 };
+enum { LEAST_PATCH = 64, MOST_PATCH = 4096 };
 
 static int32_t round_up(int32_t value, int32_t step)
 {

@@ -9,9 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Ritz pairs of the skeleton go on to the whole matrix when ||OP x - theta x|| is below this share of theta: the
- * condensation's own error is about as large. */
-static const double skeleton_tolerance = 2e-3;
+/* Ritz pairs of the skeleton go on to the whole matrix when ||OP x - theta x|| is below a share of theta: half of what
+ * the mode allows ||A v - lambda v|| / lambda, for one inverse iteration hands such an error on nearly undiminished,
+ * but between these, where the condensation's own error rules. */
+static const double least_tolerance = 1e-4, most_tolerance = 2e-3, tolerance_share = 0.5;
 
 /* A null vector that has less than this length on the separators is left out: a component inside one patch. */
 static const double least_null_length = 1e-8;
@@ -101,14 +102,18 @@ static void fix_null_space(skeleton *k)
     }
 }
 
-static bool has_converged(const sl_krylov *b, int32_t columns, int32_t wanted)
+static bool has_converged(const skeleton *k)
 {
-    for (int32_t j = 0; j < wanted; j++) {
-        if (!(b->theta[j] > 0.0 && b->last[j] <= skeleton_tolerance * b->theta[j])) {
+    const sl_krylov *b = &k->krylov;
+    for (int32_t j = 0; j < k->s->wanted; j++) {
+        const double lambda = 1.0 / b->theta[j];
+        const double share = tolerance_share * sl_lanczos_bound(k->s, lambda) / lambda;
+        const double tolerance = fmax(least_tolerance, fmin(most_tolerance, share));
+        if (!(b->theta[j] > 0.0 && b->last[j] <= tolerance * b->theta[j])) {
             return false;
         }
     }
-    return b->found == columns && b->theta[columns - 1] > 0.0;
+    return b->found == k->s->columns && b->theta[b->found - 1] > 0.0;
 }
 
 static sl_status run_krylov(skeleton *k, bool *converged)
@@ -125,7 +130,7 @@ static sl_status run_krylov(skeleton *k, bool *converged)
             sl_krylov_expand(b);
             if (b->applied >= first_look || b->applied + b->w > b->max_basis) {
                 SL_TRY(sl_krylov_ritz(b, s->columns));
-                *converged = has_converged(b, s->columns, s->wanted);
+                *converged = has_converged(k);
             }
         }
         if (!*converged) {
