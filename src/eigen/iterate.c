@@ -28,7 +28,7 @@ double sl_lanczos_worst(const sl_lanczos *s)
     return worst;
 }
 
-static void deflate(sl_lanczos *s, double *W, int32_t w)
+void sl_lanczos_deflate(sl_lanczos *s, double *W, int32_t w)
 {
     double G[SL_PANEL * SL_PANEL];
     const sl_panel_pair single = {w, {W, NULL}, {s->H, NULL}};
@@ -40,10 +40,8 @@ static void deflate(sl_lanczos *s, double *W, int32_t w)
 
 void sl_lanczos_apply(sl_lanczos *s, double *W, int32_t w)
 {
-    deflate(s, W, w);
     sl_cholesky_forward_part(s->factor, SL_PART_ALL, W, w, s->solve_work, s->context);
     sl_cholesky_backward_part(s->factor, SL_PART_ALL, W, w, s->solve_work, s->context);
-    deflate(s, W, w);
     s->info.solves += w;
 }
 
@@ -67,6 +65,7 @@ sl_status sl_lanczos_iterate(sl_lanczos *s)
         SL_TRY(sl_report_progress(s->context, "eigenvectors", (double)p / panels));
         if (!locked) {
             sl_lanczos_apply(s, sl_panel_at(&s->X, p), SL_PANEL);
+            sl_lanczos_deflate(s, sl_panel_at(&s->X, p), SL_PANEL);
         }
     }
     s->info.iterations++;

@@ -78,8 +78,12 @@ double sl_lanczos_worst(const sl_lanczos *s);
 /* What the mode allows the residual of a pair. */
 double sl_lanczos_bound(const sl_lanczos *s, double lambda);
 
-/* W := inv(A - sigma I) W, orthogonal to the null space before and after. */
+/* W := inv(A - sigma I) W. What W has of the null space grows by 1 / |sigma|: it is to be taken out before, and what
+ * rounding puts there after. */
 void sl_lanczos_apply(sl_lanczos *s, double *W, int32_t w);
+
+/* Takes the null space out of W. */
+void sl_lanczos_deflate(sl_lanczos *s, double *W, int32_t w);
 
 /* certify.c: decides the next stage: done, or more pairs, or a larger block. */
 SL_NODISCARD sl_status sl_lanczos_certify(sl_lanczos *s);

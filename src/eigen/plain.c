@@ -10,6 +10,7 @@ static const double stop_share = 0.5;
 /* The basis is looked at again once so much of the way that is left, by the pace so far, lies behind. */
 static const double look_share = 0.8;
 
+/* The null space is the basis's fixed part: its sweeps take it out. */
 static void apply_inverse(void *user, double *W, int32_t w)
 {
     sl_lanczos_apply(user, W, w);

@@ -196,7 +196,9 @@ sl_status sl_lanczos_skeleton(sl_lanczos *s, bool *usable)
         for (int32_t p = 0; p < sl_panel_count(s->columns); p++) {
             SL_TRY(sl_report_progress(s->context, "patches", (double)p / sl_panel_count(s->columns)));
             recover_panel(&k, p);
+            sl_lanczos_deflate(s, sl_panel_at(&s->X, p), SL_PANEL);
             sl_lanczos_apply(s, sl_panel_at(&s->X, p), SL_PANEL);
+            sl_lanczos_deflate(s, sl_panel_at(&s->X, p), SL_PANEL);
         }
         s->info.iterations++;
         SL_TRY(sl_lanczos_rayleigh_ritz(s));
