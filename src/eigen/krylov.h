@@ -49,6 +49,17 @@ SL_NODISCARD sl_status sl_krylov_init(int32_t rows, int32_t fixed, int32_t block
                                       const sl_context *context, sl_krylov *k);
 void sl_krylov_clear(sl_krylov *k);
 
+/* Columns of Q in use. */
+static inline int32_t sl_krylov_columns(const sl_krylov *k)
+{
+    return k->fixed + k->applied + k->pending;
+}
+
+/* W = W_new R with orthonormal W_new, W orthogonal to the basis and G = W'W: by Cholesky of G twice, or column by
+ * column. Lanes that depend on the basis or on one another (before: their lengths before they were projected) are
+ * replaced by random ones, with zeros in R. */
+void sl_krylov_orthonormalise(sl_krylov *k, double *G, const double *before, double *R);
+
 /* Fills the pending block up with random vectors orthogonal to the basis. */
 void sl_krylov_random(sl_krylov *k);
 
