@@ -24,7 +24,7 @@ static void the_skeleton_finds_what_the_plain_start_finds(void **state)
         for (int32_t deflate = 0; deflate < 2; deflate++) {
             sl_lanczos_def def = sl_lanczos_default();
             def.count = COUNT;
-            def.start = start;
+            def.start = (sl_lanczos_start)start;
             def.xyz = xyz;
             def.null_space = ones;
             def.null_count = deflate;
@@ -66,7 +66,7 @@ static void signs_are_right_at_the_price_of_signs(void **state)
     def.tolerance = 1e-8;
     def.mode = SL_LANCZOS_SIGNS;
     for (int start = SL_START_PLAIN; start <= SL_START_SKELETON; start++) {
-        def.start = start;
+        def.start = (sl_lanczos_start)start;
         pairs p = pairs_of(A, &def);
         assert_true(p.info.converged && p.info.certified);
         assert_true(p.info.solves + p.info.skeleton_solves < exact.info.solves + 80);
@@ -160,7 +160,7 @@ static void results_do_not_depend_on_workers(void **state)
     def.count = COUNT;
     def.xyz = xyz;
     for (int start = SL_START_PLAIN; start <= SL_START_SKELETON; start++) {
-        def.start = start;
+        def.start = (sl_lanczos_start)start;
         pairs p = pairs_of(A, &def);
         for (int32_t workers = 2; workers <= 5; workers += 3) {
             double lambda[COUNT], *vectors = sl_alloc(COUNT * (int64_t)A->ncols, sizeof *vectors);
