@@ -79,6 +79,9 @@ static sl_status take_vectors(sl_lanczos *s, bool basis_stays)
         sl_krylov_clear(&s->krylov);
         s->krylov_live = false;
     }
+    for (int32_t p = 0; p < sl_panel_count(s->columns); p++) { /* the last block was projected once only */
+        sl_lanczos_deflate(s, sl_panel_at(&s->X, p), SL_PANEL);
+    }
     SL_TRY(sl_lanczos_rayleigh_ritz(s));
 cleanup:
     return status;
