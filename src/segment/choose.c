@@ -63,7 +63,7 @@ static sl_status find_candidates(cut_search *s)
 {
     sl_status status = SL_OK;
     const int32_t wanted = s->def->vectors < 2 ? 2 : s->def->vectors; /* the Fiedler vector at least */
-    SL_TRY(sl_spectrum_compute(s->graph, wanted, s->context, &s->spectrum));
+    SL_TRY(sl_spectrum_compute_signs(s->graph, wanted, s->context, &s->spectrum));
     s->candidates = sl_alloc(s->spectrum->count, sizeof *s->candidates);
     s->passing = sl_alloc(s->spectrum->count, sizeof *s->passing);
     if (s->candidates == NULL || s->passing == NULL) {
