@@ -26,7 +26,7 @@ static void check_simple_rule(const sl_piece *piece, const sl_segment_def *def)
 {
     sl_facet_graph *g = test_whole_graph(piece->mesh, NULL);
     sl_spectrum *s = NULL;
-    assert_int_equal(sl_spectrum_compute(g, def->vectors, NULL, &s), SL_OK);
+    assert_int_equal(sl_spectrum_compute_signs(g, def->vectors, NULL, &s), SL_OK);
     sl_cut_candidate *c = malloc((size_t)s->count * sizeof *c);
     assert_int_equal(sl_cut_candidates(piece->mesh, g, s, c), SL_OK);
     sl_choice choice;
