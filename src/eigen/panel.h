@@ -83,10 +83,6 @@ typedef struct sl_rows {
 SL_NODISCARD sl_status sl_rows_create(const sl_csc *A, const int32_t *perm, sl_rows *out);
 void sl_rows_clear(sl_rows *A);
 
-/* Y = (A - shift I) X for rows begin .. end - 1; X: n x w, Y: (end - begin) x w, w = 4 or 8. */
-void sl_rows_multiply(const sl_rows *A, const double *X, int32_t w, double shift, int64_t begin, int64_t end,
-                      double *Y);
-
 /* XX = M'M and XAX = M'AM over the first `columns` columns: columns x columns each, leading dimension `columns`.
  * SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_panels_grams(const sl_panels *M, int32_t columns, const sl_rows *A, double *XX, double *XAX,
