@@ -48,7 +48,7 @@ sl_status gen_finish(gen_builder *b, sl_generated **out)
         gen_clear(b);
         return SL_OUT_OF_MEMORY;
     }
-    *mesh = (sl_generated){(int32_t)b->nv, (int32_t)b->nf, b->xyz, b->first, b->index};
+    *mesh = (sl_generated){(int32_t)b->nv, (int32_t)b->nf, b->xyz, b->first, b->index, 0, NULL};
     *b = (gen_builder){0};
     *out = mesh;
     return SL_OK;

@@ -43,5 +43,10 @@ void sl_generated_free(sl_generated *mesh)
     sl_free(mesh->xyz);
     sl_free(mesh->face_first);
     sl_free(mesh->index);
+    for (int32_t k = 0; k < mesh->nplanted; k++) {
+        sl_free(mesh->planted[k].vertex);
+        sl_free(mesh->planted[k].face);
+    }
+    sl_free(mesh->planted);
     sl_free(mesh);
 }

@@ -5,12 +5,24 @@
 
 #include "mesh/build.h"
 
+/* A symmetry known from how the model was made: x -> M x + t carries it onto itself. */
+typedef struct sl_planted {
+    char name[32];     /* "mirror x", "rotation 72" */
+    bool mirror;       /* det M < 0 and an involution */
+    bool exact;        /* false: of the connectivity only (positions were perturbed) */
+    double matrix[12]; /* 3 x 4, row-major: M | t */
+    int32_t *vertex;   /* nv: image of a vertex */
+    int32_t *face;     /* nf: image of a facet */
+} sl_planted;
+
 /* A polygon mesh; all arrays owned. */
 typedef struct sl_generated {
     int32_t nv, nf;
     double *xyz;         /* nv x 3 */
     int32_t *face_first; /* nf + 1 */
     int32_t *index;      /* face_first[nf] */
+    int32_t nplanted;    /* symmetries known (generators of the group and all mirrors; the identity is not listed) */
+    sl_planted *planted;
 } sl_generated;
 
 /* seed: random details (bumps, spikes); scale: 1 = the usual size, each further one about four times the facets.

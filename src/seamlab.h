@@ -35,5 +35,6 @@
 #include "segment/segment.h"
 #include "sparse/cholesky.h"
 #include "spectral/spectrum.h"
+#include "symmetry/symmetry.h"
 
 #endif

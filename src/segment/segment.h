@@ -17,7 +17,27 @@ typedef enum sl_cut_rule {
 
 typedef enum sl_pairing { SL_PAIR_AUTO, SL_PAIR_ON, SL_PAIR_OFF } sl_pairing;
 
+/* Where cuts come from. Recursion until valid and flattening are the same for all. */
+typedef enum sl_cut_method {
+    SL_METHOD_SPECTRAL, /* eigenvectors of the facet graph (paper) */
+    SL_METHOD_PCA,      /* the plane across the principal axis of largest extent, through the centre */
+    SL_METHOD_VSA       /* variational shape approximation: proxies of a chart (Cohen-Steiner et al. 2004) */
+} sl_cut_method;
+
+/* Which symmetries are used. */
+typedef enum sl_symmetry_use {
+    SL_SYMMETRY_USE_AUTO, /* exact where found (default) */
+    SL_SYMMETRY_USE_OFF,
+    SL_SYMMETRY_USE_EXACT, /* the same; none found is a warning */
+    SL_SYMMETRY_USE_NEAR   /* near ones too: labelled approximate */
+} sl_symmetry_use;
+
 typedef struct sl_segment_def {
+    sl_cut_method method;     /* default spectral */
+    int32_t vsa_regions;      /* proxies of the first cut; 0 = by error (default) */
+    double vsa_error;         /* L2,1 error over area where proxies are added no more; default 0.05 */
+    sl_symmetry_use symmetry; /* default auto */
+    bool test_halves;         /* after each cut, are its halves isomorphic (paper, Sec. 4.3)? default false */
     sl_cut_rule rule;
     int32_t vectors;    /* eigenvectors computed a cut; default 30 */
     sl_pairing pairing; /* triangles back into quads in the facet graph; default auto */

@@ -1,0 +1,103 @@
+/* Symmetries of a mesh: automorphisms of its halfedge structure, and what the geometry says of them.
+ * Layer: symmetry (may include mesh, geom, graph, base).
+ *
+ * Only twin pointers count: seams that are cut are borders. A map sends facets to facets, edges to edges and corners to
+ * corners: corner h (of facet face[h], at vertex origin[h]) goes to corner image[h] of the image facet, at the image
+ * vertex. Where the map keeps the orientation, next goes to next; where it reverses it, next to prev, and the edge of
+ * halfedge h goes to that of prev(image[h]).
+ */
+#ifndef SL_SYMMETRY_SYMMETRY_H
+#define SL_SYMMETRY_SYMMETRY_H
+
+#include "base/context.h"
+#include "mesh/mesh.h"
+
+/* At most this many automorphisms are listed for one component. */
+#define SL_SYMMETRY_MOST 64
+
+/* How far the geometry follows a map of the connectivity. */
+typedef enum sl_symmetry_kind {
+    SL_SYMMETRY_EXACT,      /* corresponding edges agree in length within 1e-6 of the longer (def.exact) */
+    SL_SYMMETRY_NEAR,       /* an isometry of space carries the vertices onto their images within def.near */
+    SL_SYMMETRY_TOPOLOGICAL /* neither: reported, never used for sharing */
+} sl_symmetry_kind;
+
+/* One component onto itself, or onto another. */
+typedef struct sl_symmetry_map {
+    int32_t from, to; /* components */
+    int32_t count;    /* facets of either */
+    int32_t *corner;  /* image of each corner of the facets of `from`, facet by facet as in sl_symmetry.face */
+    bool reverses;    /* the orientation: a mirror image */
+    int32_t order;    /* smallest k > 0 with map^k = identity; 0 for a copy (from != to) */
+    sl_symmetry_kind kind;
+    double misfit;       /* largest relative difference of corresponding edge lengths */
+    double deviation;    /* largest distance of a moved vertex to its image, over the component's diagonal */
+    double isometry[12]; /* 3 x 4, row-major: the rigid motion (with a reflection where det < 0) that fits best */
+    /* of an involution (order 2) */
+    int32_t fixed_facets; /* facets that are their own images */
+    int32_t axis_edges;   /* edges between a facet and its image, one an edge */
+    double axis_length;   /* of the cut that takes the halves (fixed facets with the first) apart */
+    bool
+        separates; /* removing axis edges and fixed facets leaves two sets that the map exchanges: usable for sharing */
+} sl_symmetry_map;
+
+typedef struct sl_symmetry {
+    int32_t components;
+    int32_t *first;     /* components + 1: into face */
+    int32_t *face;      /* nf: facets grouped by component, ascending in each */
+    int32_t *component; /* nf */
+    int32_t *original;  /* components: the first component (by first facet) that this one is a copy of; itself if none.
+                           Copies are exact. */
+    int32_t nmap;
+    sl_symmetry_map *map; /* automorphisms but the identity, by component; then copies original -> component */
+    bool truncated;       /* some component has more automorphisms than SL_SYMMETRY_MOST; mirrors come first */
+} sl_symmetry;
+
+typedef struct sl_symmetry_def {
+    double exact;      /* relative difference of edge lengths; default 1e-6 */
+    double near;       /* deviation over the diagonal; default 1e-2 */
+    bool mirrors_only; /* involutions that separate, and copies, only; default false */
+    int32_t most;      /* maps a component; default SL_SYMMETRY_MOST */
+} sl_symmetry_def;
+
+sl_symmetry_def sl_symmetry_default(void);
+
+/* All of it. partner (nullable): facets paired as sl_pair_triangles does; a pair is then one quad, whichever way its
+ * diagonal runs: its corners go to corners of the image pair at the image vertices (any of the two triangles that has
+ * one). SL_OUT_OF_MEMORY, SL_CANCELLED. Near linear: signatures are refined first, and the rarest halfedge is tried
+ * against all of its signature; every traversal ends at the first mismatch. A component whose regularity would cost
+ * more full traversals than def->most (and some) stops there: truncated. */
+SL_NODISCARD sl_status sl_symmetry_find(const sl_mesh *mesh, const int32_t *partner, const sl_symmetry_def *def,
+                                        const sl_context *context, sl_symmetry **out);
+void sl_symmetry_free(sl_symmetry *symmetry); /* NULL is a no-op */
+
+/* The isomorphism of the component of corner a onto that of b that sends a to b, if there is one; image: nh corners, -1
+ * outside the component of a (and everywhere when *found is false). Linear in the component: both are walked at once
+ * (paper, Sec. 4.3). SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_symmetry_traverse(const sl_mesh *mesh, int32_t a, int32_t b, bool reverses, int32_t *image,
+                                            bool *found);
+
+/* The two sides of an involution that separates: side[f] = 1 for one half and the fixed facets (with the facet of
+ * lowest number that is not fixed), 0 for the other, 2 for other components. side: nf. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_symmetry_sides(const sl_mesh *mesh, const sl_symmetry *symmetry, const sl_symmetry_map *map,
+                                         uint8_t *side);
+
+/* Image facet of facet f of component map->from. */
+int32_t sl_symmetry_image(const sl_mesh *mesh, const sl_symmetry *symmetry, const sl_symmetry_map *map, int32_t f);
+
+/* Near symmetry where the connectivity has none: the mirror plane that carries the surface best onto itself
+ * (candidates: the principal axes of area, then refined), by matching vertices to the nearest point of the mirrored
+ * surface. */
+typedef struct sl_near_mirror {
+    bool found;
+    double normal[3], offset;       /* plane: normal . x = offset, in the normalised mesh */
+    double misfit_mean, misfit_max; /* distances of mirrored vertices to the surface, over the diagonal */
+    double matched;                 /* share of the vertices within def.near */
+} sl_near_mirror;
+
+/* found: at least 90 % of the area is within def->near. match (nullable, nf): the facet nearest to the mirrored
+ * centroid of each facet. SL_OUT_OF_MEMORY. O(n log n). */
+SL_NODISCARD sl_status sl_symmetry_near(const sl_mesh *mesh, const sl_symmetry_def *def, const sl_context *context,
+                                        int32_t *match, sl_near_mirror *out);
+
+#endif
