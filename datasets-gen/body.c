@@ -1,6 +1,7 @@
 /* A person standing with arms held away from the body, facing +z; symmetric about x = 0 to the bit. */
 #include "boxmodel.h"
 #include "builder.h"
+#include "plant.h"
 
 #include <math.h>
 
@@ -96,5 +97,6 @@ sl_status gen_body(uint64_t seed, int32_t scale, sl_generated **out)
         add_arm(&cage);
         add_head(&cage);
     }
-    return gen_cage_finish(&cage, 1 + scale, out);
+    const sl_status status = gen_cage_finish(&cage, 1 + scale, out);
+    return status != SL_OK ? status : gen_planted(gen_plant_mirror(*out, "mirror x", 1.0, 0.0, 0.0, true), out);
 }

@@ -48,7 +48,8 @@ sl_status gen_finish(gen_builder *b, sl_generated **out)
         gen_clear(b);
         return SL_OUT_OF_MEMORY;
     }
-    *mesh = (sl_generated){(int32_t)b->nv, (int32_t)b->nf, b->xyz, b->first, b->index, 0, NULL};
+    *mesh = (sl_generated){
+        .nv = (int32_t)b->nv, .nf = (int32_t)b->nf, .xyz = b->xyz, .face_first = b->first, .index = b->index};
     *b = (gen_builder){0};
     *out = mesh;
     return SL_OK;

@@ -6,12 +6,12 @@
 #include <string.h>
 
 static const sl_generator table[] = {
-    {"hand", "a left hand, closed at the wrist; quads", gen_hand},
-    {"body", "a standing person, mirror symmetric to the bit; quads", gen_body},
-    {"spiky", "a ball with fourteen spikes, their places from the seed; quads", gen_spiky},
-    {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere},
-    {"torus", "a torus of quads, genus 1", gen_torus},
-    {"box", "a closed box of quads: sharp edges, flat faces", gen_box},
+    {"hand", "a left hand, closed at the wrist; quads", gen_hand, 0, 1, 0},
+    {"body", "a standing person, mirror symmetric to the bit; quads", gen_body, 0, 1, 0},
+    {"spiky", "a ball with fourteen spikes, their places from the seed; quads", gen_spiky, 0, 1, 0},
+    {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere, 0, 1, 0},
+    {"torus", "a torus of quads, genus 1", gen_torus, 1, 1, 0},
+    {"box", "a closed box of quads: sharp edges, flat faces", gen_box, 0, 1, 0},
 };
 
 const sl_generator *sl_generators(int32_t *count)
@@ -48,5 +48,6 @@ void sl_generated_free(sl_generated *mesh)
         sl_free(mesh->planted[k].face);
     }
     sl_free(mesh->planted);
+    sl_free(mesh->near);
     sl_free(mesh);
 }

@@ -1,10 +1,21 @@
 /* Shapes with a formula: sphere, torus, box. */
 #include "base/memory.h"
 #include "builder.h"
+#include "plant.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
+
+/* Of n meridians: the turns about y and the mirrors through it, and the mirror y -> -y. */
+static sl_status plant_round(int32_t n, sl_generated **out)
+{
+    sl_status status = gen_plant_mirror(*out, "mirror y", 0.0, 1.0, 0.0, true);
+    if (status == SL_OK) {
+        status = gen_plant_dihedral(*out, 1, n, 0.0, true);
+    }
+    return gen_planted(status, out);
+}
 
 /* Doubles with each step of scale: four times the facets. */
 static int32_t refined(int32_t base, int32_t scale)
@@ -39,7 +50,8 @@ sl_status gen_sphere(uint64_t seed, int32_t scale, sl_generated **out)
         }
         gen_triangle(&b, last + j, last + k, north);
     }
-    return gen_finish(&b, out);
+    const sl_status status = gen_finish(&b, out);
+    return status != SL_OK ? status : plant_round(sectors, out);
 }
 
 sl_status gen_torus(uint64_t seed, int32_t scale, sl_generated **out)
@@ -60,7 +72,8 @@ sl_status gen_torus(uint64_t seed, int32_t scale, sl_generated **out)
             gen_quad(&b, i * n + j, i1 * n + j, i1 * n + j1, i * n + j1);
         }
     }
-    return gen_finish(&b, out);
+    const sl_status status = gen_finish(&b, out);
+    return status != SL_OK ? status : plant_round(m, out);
 }
 
 /* Vertex of the box surface at grid point p, made when first met. */
@@ -68,7 +81,8 @@ static int32_t box_vertex(gen_builder *b, int32_t *made, const int32_t n[3], con
 {
     const int64_t slot = p[0] + (int64_t)(n[0] + 1) * (p[1] + (int64_t)(n[1] + 1) * p[2]);
     if (made[slot] < 0) {
-        made[slot] = gen_vertex(b, (double)p[0] / n[0] * 1.3, (double)p[1] / n[1] * 0.8, (double)p[2] / n[2]);
+        made[slot] = gen_vertex(b, ((double)p[0] / n[0] - 0.5) * 1.3, ((double)p[1] / n[1] - 0.5) * 0.8,
+                                (double)p[2] / n[2] - 0.5);
     }
     return made[slot];
 }
@@ -111,5 +125,10 @@ sl_status gen_box(uint64_t seed, int32_t scale, sl_generated **out)
         box_side(&b, made, n, axis, true);
     }
     sl_free(made);
-    return gen_finish(&b, out);
+    sl_status status = gen_finish(&b, out);
+    for (int axis = 0; axis < 3 && status == SL_OK; axis++) {
+        const char name[] = {'m', 'i', 'r', 'r', 'o', 'r', ' ', "xyz"[axis], '\0'};
+        status = gen_plant_mirror(*out, name, axis == 0, axis == 1, axis == 2, true);
+    }
+    return gen_planted(status, out);
 }

@@ -1,0 +1,239 @@
+#include "plant.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double gen_plant_tolerance = 1e-9;
+
+/* A vertex by its coordinate along a direction in which hardly any two vertices of a model coincide. */
+typedef struct plant_key {
+    double along;
+    int32_t vertex;
+} plant_key;
+
+typedef struct plant_work {
+    const sl_generated *mesh;
+    double tolerance; /* in the mesh's units */
+    bool reversed;    /* det M < 0 */
+    plant_key *key;   /* nv, ascending */
+    int32_t *first;   /* nv + 1: into facet */
+    int32_t *facet;   /* facets at each vertex, ascending */
+    uint8_t *taken;   /* larger of nv, nf */
+    int32_t *vertex, *face;
+} plant_work;
+
+static double along(const double p[3])
+{
+    return 0.7548776662466927 * p[0] + 0.5698402909980532 * p[1] + 0.3247179572447460 * p[2];
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const plant_key *x = a, *y = b;
+    if (x->along != y->along) {
+        return x->along < y->along ? -1 : 1;
+    }
+    return x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
+}
+
+static double extent_of(const sl_generated *mesh)
+{
+    double extent = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (int64_t v = 0; v < mesh->nv; v++) {
+            lo = fmin(lo, mesh->xyz[3 * v + axis]);
+            hi = fmax(hi, mesh->xyz[3 * v + axis]);
+        }
+        extent = fmax(extent, hi - lo);
+    }
+    return extent;
+}
+
+static void sort_vertices(plant_work *w)
+{
+    for (int32_t v = 0; v < w->mesh->nv; v++) {
+        w->key[v] = (plant_key){along(w->mesh->xyz + 3 * (int64_t)v), v};
+    }
+    qsort(w->key, (size_t)w->mesh->nv, sizeof *w->key, compare_keys);
+}
+
+static void list_facets(plant_work *w)
+{
+    const sl_generated *mesh = w->mesh;
+    const int32_t corners = mesh->face_first[mesh->nf];
+    for (int32_t c = 0; c < corners; c++) {
+        w->first[mesh->index[c] + 1]++;
+    }
+    for (int32_t v = 0; v < mesh->nv; v++) {
+        w->first[v + 1] += w->first[v];
+    }
+    for (int32_t f = mesh->nf - 1; f >= 0; f--) { /* from behind: first ends up as the start of each list again */
+        for (int32_t c = mesh->face_first[f]; c < mesh->face_first[f + 1]; c++) {
+            w->facet[--w->first[mesh->index[c] + 1]] = f;
+        }
+    }
+    for (int32_t v = 0; v < mesh->nv; v++) {
+        w->first[v] = w->first[v + 1];
+    }
+    w->first[mesh->nv] = corners;
+}
+
+/* The vertex at p, -1 = none. */
+static int32_t vertex_at(const plant_work *w, const double p[3])
+{
+    const double here = along(p), reach = 1.5 * w->tolerance; /* the direction's length is about 1 */
+    int32_t low = 0, high = w->mesh->nv;
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        if (w->key[middle].along < here - reach) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    for (; low < w->mesh->nv && w->key[low].along <= here + reach; low++) {
+        const double *q = w->mesh->xyz + 3 * (int64_t)w->key[low].vertex;
+        if (fabs(p[0] - q[0]) <= w->tolerance && fabs(p[1] - q[1]) <= w->tolerance &&
+            fabs(p[2] - q[2]) <= w->tolerance) {
+            return w->key[low].vertex;
+        }
+    }
+    return -1;
+}
+
+static sl_status map_vertices(plant_work *w, const double m[12])
+{
+    bool moved = false;
+    for (int32_t v = 0; v < w->mesh->nv; v++) {
+        const double *p = w->mesh->xyz + 3 * (int64_t)v;
+        double image[3];
+        for (int k = 0; k < 3; k++) {
+            image[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
+        }
+        w->vertex[v] = vertex_at(w, image);
+        if (w->vertex[v] < 0 || w->taken[w->vertex[v]] != 0) {
+            return SL_INTERNAL;
+        }
+        w->taken[w->vertex[v]] = 1;
+        moved |= w->vertex[v] != v;
+    }
+    return moved ? SL_OK : SL_INTERNAL;
+}
+
+/* Does facet g run through the images of f's corners, in f's order or against it? */
+static bool is_image(const plant_work *w, int32_t f, int32_t g)
+{
+    const sl_generated *mesh = w->mesh;
+    const int32_t *a = mesh->index + mesh->face_first[f], *b = mesh->index + mesh->face_first[g];
+    const int32_t degree = mesh->face_first[f + 1] - mesh->face_first[f];
+    int32_t start = 0;
+    if (mesh->face_first[g + 1] - mesh->face_first[g] != degree) {
+        return false;
+    }
+    while (start < degree && b[start] != w->vertex[a[0]]) {
+        start++;
+    }
+    for (int32_t k = 0; k < degree && start < degree; k++) {
+        if (b[(w->reversed ? start + degree - k : start + k) % degree] != w->vertex[a[k]]) {
+            return false;
+        }
+    }
+    return start < degree;
+}
+
+static int32_t image_of_facet(const plant_work *w, int32_t f)
+{
+    int32_t best = -1; /* the image of a corner with the fewest facets around it */
+    for (int32_t c = w->mesh->face_first[f]; c < w->mesh->face_first[f + 1]; c++) {
+        const int32_t v = w->vertex[w->mesh->index[c]];
+        if (best < 0 || w->first[v + 1] - w->first[v] < w->first[best + 1] - w->first[best]) {
+            best = v;
+        }
+    }
+    for (int32_t i = w->first[best]; i < w->first[best + 1]; i++) {
+        if (is_image(w, f, w->facet[i])) {
+            return w->facet[i];
+        }
+    }
+    return -1;
+}
+
+static sl_status map_facets(plant_work *w)
+{
+    memset(w->taken, 0, (size_t)w->mesh->nf);
+    for (int32_t f = 0; f < w->mesh->nf; f++) {
+        const int32_t g = image_of_facet(w, f);
+        if (g < 0 || w->taken[g] != 0) {
+            return SL_INTERNAL;
+        }
+        w->taken[g] = 1;
+        w->face[f] = g;
+    }
+    return SL_OK;
+}
+
+static double determinant(const double m[12])
+{
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+/* A reflection in a plane, not an inversion in a point: of a negative determinant, the trace 1, its own inverse. */
+static bool is_mirror(const plant_work *w, const double m[12])
+{
+    for (int32_t v = 0; v < w->mesh->nv; v++) {
+        if (w->vertex[w->vertex[v]] != v) {
+            return false;
+        }
+    }
+    return w->reversed && fabs(m[0] + m[5] + m[10] - 1.0) < 1e-6;
+}
+
+static sl_status append(sl_generated *mesh, const char *name, const double matrix[12], bool exact, plant_work *w)
+{
+    sl_planted *list = sl_realloc(mesh->planted, (int64_t)mesh->nplanted + 1, sizeof *list);
+    if (list == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    mesh->planted = list;
+    sl_planted *planted = &list[mesh->nplanted++];
+    *planted = (sl_planted){.mirror = is_mirror(w, matrix), .exact = exact, .vertex = w->vertex, .face = w->face};
+    snprintf(planted->name, sizeof planted->name, "%s", name);
+    memcpy(planted->matrix, matrix, sizeof planted->matrix);
+    w->vertex = w->face = NULL;
+    return SL_OK;
+}
+
+sl_status gen_plant(sl_generated *mesh, const char *name, const double matrix[12], bool exact)
+{
+    plant_work w = {.mesh = mesh, .reversed = determinant(matrix) < 0.0};
+    sl_status status = SL_OK;
+    w.tolerance = gen_plant_tolerance * extent_of(mesh);
+    w.key = sl_alloc(mesh->nv, sizeof *w.key);
+    w.first = sl_calloc((int64_t)mesh->nv + 2, sizeof *w.first);
+    w.facet = sl_alloc(mesh->face_first[mesh->nf], sizeof *w.facet);
+    w.taken = sl_calloc(mesh->nv > mesh->nf ? mesh->nv : mesh->nf, sizeof *w.taken);
+    w.vertex = sl_alloc(mesh->nv, sizeof *w.vertex);
+    w.face = sl_alloc(mesh->nf, sizeof *w.face);
+    if (w.key == NULL || w.first == NULL || w.facet == NULL || w.taken == NULL || w.vertex == NULL || w.face == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    sort_vertices(&w);
+    list_facets(&w);
+    SL_TRY(map_vertices(&w, matrix));
+    SL_TRY(map_facets(&w));
+    SL_TRY(append(mesh, name, matrix, exact, &w));
+cleanup:
+    sl_free(w.key);
+    sl_free(w.first);
+    sl_free(w.facet);
+    sl_free(w.taken);
+    sl_free(w.vertex);
+    sl_free(w.face);
+    return status;
+}
