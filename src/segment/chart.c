@@ -81,8 +81,8 @@ cleanup:
     return status;
 }
 
-/* Connected components of the two sides, numbered by first facet, and the seam between them. */
-static sl_status label_parts(sl_piece *piece, const uint8_t *side, sl_chart_job *job)
+/* Connected components of the sides, numbered by first facet, and the seam between them. */
+static sl_status label_parts(sl_piece *piece, const int32_t *side, sl_chart_job *job)
 {
     sl_mesh *m = piece->mesh;
     job->part = sl_alloc(m->nf, sizeof *job->part);

@@ -153,56 +153,49 @@ cleanup:
     return status;
 }
 
-/* Length of the edges between the two sides of a piece. */
-static double seam_length(const sl_mesh *mesh, const uint8_t *side)
+void sl_choice_measure(const sl_mesh *mesh, sl_choice *choice)
 {
-    double length = 0.0;
+    choice->length = 0.0;
+    choice->found = false;
     for (int32_t h = 0; h < mesh->nh; h++) {
-        if (h < mesh->twin[h] && side[mesh->face[h]] != side[mesh->face[mesh->twin[h]]]) {
-            length += sl_mesh_edge_length(mesh, h);
+        if (h < mesh->twin[h] && choice->side[mesh->face[h]] != choice->side[mesh->face[mesh->twin[h]]]) {
+            choice->length += sl_mesh_edge_length(mesh, h);
+            choice->found = true;
         }
     }
-    return length;
-}
-
-static bool both_sides(const uint8_t *side, int32_t n)
-{
-    int32_t positive = 0;
-    for (int32_t f = 0; f < n; f++) {
-        positive += side[f];
-    }
-    return positive > 0 && positive < n;
 }
 
 /* Fills in the winner, or the Fiedler vector's sides where nothing passed the filter. */
 static sl_status take_cut(const cut_search *s, sl_choice *choice)
 {
     sl_status status = SL_OK;
-    uint8_t *node_side = NULL;
     const int32_t n = s->piece->mesh->nf;
     int32_t best = 0;
     for (int32_t k = 1; k < s->npassing; k++) {
         best = s->score[k] < s->score[best] ? k : best;
     }
+    uint8_t *side = sl_alloc(n, sizeof *side), *node_side = sl_alloc(s->graph->graph.n, sizeof *node_side);
     choice->side = sl_alloc(n, sizeof *choice->side);
-    node_side = sl_alloc(s->graph->graph.n, sizeof *node_side);
-    if (choice->side == NULL || node_side == NULL) {
+    if (choice->side == NULL || side == NULL || node_side == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
     const bool passed = s->npassing > 0;
     const int32_t vector = passed ? s->candidates[s->passing[best]].vector : 1;
     if (s->facet_side != NULL && passed) {
-        memcpy(choice->side, s->facet_side + (int64_t)best * n, (size_t)n);
+        memcpy(side, s->facet_side + (int64_t)best * n, (size_t)n);
         choice->smoothed = s->smoothed[best];
     } else {
-        SL_TRY(facet_sides(s, vector, passed, node_side, choice->side, &choice->smoothed));
+        SL_TRY(facet_sides(s, vector, passed, node_side, side, &choice->smoothed));
+    }
+    for (int32_t f = 0; f < n; f++) {
+        choice->side[f] = side[f];
     }
     choice->vector = passed ? vector : -1;
     choice->lambda = s->spectrum->lambda[vector];
     choice->candidates = s->npassing;
-    choice->length = seam_length(s->piece->mesh, choice->side);
-    choice->found = both_sides(choice->side, n);
+    sl_choice_measure(s->piece->mesh, choice);
 cleanup:
+    sl_free(side);
     sl_free(node_side);
     return status;
 }

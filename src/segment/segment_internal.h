@@ -66,22 +66,25 @@ SL_NODISCARD sl_status sl_patch_border_pairs(const sl_patch *patch, int32_t **ve
 SL_NODISCARD sl_status sl_flatten_piece(const sl_piece *piece, const sl_flatten_def *def, const sl_context *context,
                                         double *corner_uv, sl_flatten_result *flat);
 
-/* A bipartition of a piece's facets. */
+/* A partition of a piece's facets. vector, lambda, candidates: as in sl_split. */
 typedef struct sl_choice {
-    uint8_t *side;  /* owned, one a facet */
+    int32_t *side;  /* owned, one a facet: 0 and 1, or a proxy; connected parts of a side become charts each */
     int32_t vector; /* -1 = no vector passed the filter and this is the Fiedler vector's */
     double lambda;
-    int32_t candidates; /* vectors that passed */
-    double length;      /* of the seam */
+    int32_t candidates;
+    double length; /* of the seam */
     bool smoothed;
     bool found; /* false: nothing could be cut */
 } sl_choice;
 
-/* Chooses a spectral cut of a connected piece by def->rule. partner: a facet's partner in the piece, NULL = no pairing.
- * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
+/* Chooses a cut of a connected piece by def->method (and def->rule). partner: a facet's partner in the piece, NULL = no
+ * pairing. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
 SL_NODISCARD sl_status sl_choose_cut(const sl_piece *piece, const int32_t *partner, const sl_segment_def *def,
                                      const sl_context *context, sl_choice *choice);
 void sl_choice_clear(sl_choice *choice);
+
+/* Fills in length and found from the sides. */
+void sl_choice_measure(const sl_mesh *mesh, sl_choice *choice);
 
 /* How well the two sides would flatten, smaller is better: see lookahead.c. */
 SL_NODISCARD sl_status sl_lookahead_score(const sl_piece *piece, const uint8_t *side, const sl_context *context,

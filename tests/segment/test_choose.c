@@ -13,7 +13,7 @@ static sl_piece *whole_piece(const sl_mesh *mesh, const sl_triangulation *t)
     return piece;
 }
 
-static double side_length(const sl_mesh *m, const uint8_t *side)
+static double side_length(const sl_mesh *m, const int32_t *side)
 {
     double length = 0.0;
     for (int32_t h = 0; h < m->nh; h++) {
