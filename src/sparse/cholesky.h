@@ -66,8 +66,9 @@ SL_NODISCARD sl_status sl_cholesky_solve_once(const sl_csc *A, const sl_cholesky
  *               TOP     X_t := inv(L_tt') S_t X_t                          X: the top rows alone
  *
  * forward BOTTOM leaves X_t - A_tb inv(A_bb) X_b above; backward BOTTOM extends given top rows to the bottom (with
- * X_b = 0, by -inv(A_bb) A_bt X_t). 1 <= w <= 32; 8 is fastest. work: sl_cholesky_block_work_size(F, w) doubles, one
- * per caller. context: workers, nullable; the bytes do not depend on them. Cannot fail, allocates nothing. */
+ * X_b = 0, by -inv(A_bb) A_bt X_t). 1 <= w <= 32; 1 and multiples of 4 are fast, 16 is fastest. work:
+ * sl_cholesky_block_work_size(F, w) doubles, one per caller. context: workers, nullable; the bytes do not depend on
+ * them. Cannot fail, allocates nothing. */
 typedef enum sl_part { SL_PART_ALL, SL_PART_BOTTOM, SL_PART_TOP } sl_part;
 
 #define SL_CHOLESKY_MAX_BLOCK 32

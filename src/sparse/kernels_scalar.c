@@ -40,6 +40,16 @@ SL_KERNEL void vec_store_part(double *p, vec v, int count)
     }
 }
 
+SL_KERNEL vec vec_load_half(const double *p)
+{
+    return vec_load_part(p, 4);
+}
+
+SL_KERNEL void vec_store_half(double *p, vec v)
+{
+    vec_store_part(p, v, 4);
+}
+
 SL_KERNEL vec vec_of(double a)
 {
     vec v;
@@ -65,6 +75,14 @@ SL_KERNEL vec vec_subtract(vec a, vec b)
     return a;
 }
 
+SL_KERNEL vec vec_add(vec a, vec b)
+{
+    for (int i = 0; i < 8; i++) {
+        a.x[i] += b.x[i];
+    }
+    return a;
+}
+
 /* c + a b */
 SL_KERNEL vec vec_fma(vec a, vec b, vec c)
 {
@@ -81,6 +99,21 @@ SL_KERNEL vec vec_fnma(vec a, vec b, vec c)
         c.x[i] = fma(-a.x[i], b.x[i], c.x[i]);
     }
     return c;
+}
+
+SL_KERNEL vec vec_pack(const double x[8])
+{
+    return vec_load(x);
+}
+
+SL_KERNEL vec vec_sums(const vec v[8])
+{
+    vec sum;
+    for (int j = 0; j < 8; j++) {
+        const double *x = v[j].x;
+        sum.x[j] = ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+    }
+    return sum;
 }
 
 #define SL_KERNEL_GROUP 8

@@ -3,20 +3,27 @@
  * Layer: sparse. */
 #include "sparse/kernels.h"
 
-/* `sides` right-hand sides from c on; eight is a constant wherever it matters. */
+enum { HALF = SL_SLAB / 2 };
+
+/* `sides` right-hand sides from c on; eight and four are constants wherever they matter. Others go through masks, which
+ * the machine cannot forward from a store to the next load: twice the time. */
 SL_KERNEL vec side_load(const double *p, int sides)
 {
-    return sides == SL_SLAB ? vec_load(p) : vec_load_part(p, sides);
+    return sides == SL_SLAB ? vec_load(p) : sides == HALF ? vec_load_half(p) : vec_load_part(p, sides);
 }
 
 SL_KERNEL void side_store(double *p, vec v, int sides)
 {
     if (sides == SL_SLAB) {
         vec_store(p, v);
+    } else if (sides == HALF) {
+        vec_store_half(p, v);
     } else {
         vec_store_part(p, v, sides);
     }
 }
+
+#include "sparse/kernels_single.h"
 
 SL_KERNEL double *row_at(sl_rows rows, int32_t r)
 {
@@ -132,9 +139,35 @@ SL_KERNEL void backward_below(const double *slab, int count, int32_t columns, do
 /* What is done with a slab of any number of rows. */
 typedef enum slab_step { FORWARD_OWN, BACKWARD_OWN, FORWARD_BELOW, BACKWARD_BELOW } slab_step;
 
+/* For `sides`: one right-hand side, rows.w = 1. */
+enum { SINGLE = 0 };
+
+SL_KERNEL void take_single_step(slab_step step, const double *slab, int count, int32_t columns, double *own,
+                                const int32_t *row, sl_rows rows)
+{
+    switch (step) {
+    case FORWARD_OWN:
+        forward_own_1(slab, count, columns, own);
+        break;
+    case BACKWARD_OWN:
+        backward_own_1(slab, count, columns, own);
+        break;
+    case FORWARD_BELOW:
+        forward_below_1(slab, count, columns, own, row, rows);
+        break;
+    default:
+        backward_below_1(slab, count, columns, own, row, rows);
+        break;
+    }
+}
+
 SL_KERNEL void take_step(slab_step step, const double *slab, int count, int32_t columns, double *own,
                          const int32_t *row, sl_rows rows, int sides)
 {
+    if (sides == SINGLE) {
+        take_single_step(step, slab, count, columns, own, row, rows);
+        return;
+    }
     switch (step) {
     case FORWARD_OWN:
         forward_own(slab, count, columns, own, rows.w, sides);
@@ -232,10 +265,16 @@ SL_KERNEL_ENTRY void solve_forward(const double *panel, int32_t width, int32_t b
                                    sl_rows rows)
 {
     int32_t c = 0;
+    if (rows.w == 1) {
+        forward_sides(panel, width, below, row, own, rows, SINGLE);
+        return;
+    }
     for (; c + SL_SLAB <= rows.w; c += SL_SLAB) {
         forward_sides(panel, width, below, row, own + c, rows_from(rows, c), SL_SLAB);
     }
-    if (c < rows.w) {
+    if (c + HALF == rows.w) {
+        forward_sides(panel, width, below, row, own + c, rows_from(rows, c), HALF);
+    } else if (c < rows.w) {
         forward_sides(panel, width, below, row, own + c, rows_from(rows, c), rows.w - c);
     }
 }
@@ -244,10 +283,16 @@ SL_KERNEL_ENTRY void solve_backward(const double *panel, int32_t width, int32_t 
                                     sl_rows rows)
 {
     int32_t c = 0;
+    if (rows.w == 1) {
+        backward_sides(panel, width, below, row, own, rows, SINGLE);
+        return;
+    }
     for (; c + SL_SLAB <= rows.w; c += SL_SLAB) {
         backward_sides(panel, width, below, row, own + c, rows_from(rows, c), SL_SLAB);
     }
-    if (c < rows.w) {
+    if (c + HALF == rows.w) {
+        backward_sides(panel, width, below, row, own + c, rows_from(rows, c), HALF);
+    } else if (c < rows.w) {
         backward_sides(panel, width, below, row, own + c, rows_from(rows, c), rows.w - c);
     }
 }

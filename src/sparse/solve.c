@@ -138,62 +138,87 @@ void sl_cholesky_backward_part(const sl_cholesky *F, sl_part part, double *X, in
 }
 
 /* Unknowns are taken in A's order: the columns of X are then read and written in one sweep each, and only whole rows of
- * Y, a cache line of eight sides, are at random. */
-static inline void permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
+ * Y, a cache line of eight sides, are at random. Rows of Y beyond the sides are filled with zeros. */
+static inline void permute_in(const sl_cholesky *F, const double *X, int32_t sides, int32_t w, double *Y)
 {
     const int64_t n = F->n;
     for (int64_t i = 0; i < n; i++) {
         double *row = Y + (int64_t)F->place[i] * w;
-        for (int32_t c = 0; c < w; c++) {
+        for (int32_t c = 0; c < sides; c++) {
             row[c] = X[c * n + i];
+        }
+        for (int32_t c = sides; c < w; c++) {
+            row[c] = 0.0;
         }
     }
 }
 
-static inline void permute_out(const sl_cholesky *F, const double *Y, int32_t w, double *X)
+static inline void permute_out(const sl_cholesky *F, const double *Y, int32_t sides, int32_t w, double *X)
 {
     const int64_t n = F->n;
     for (int64_t i = 0; i < n; i++) {
         const double *row = Y + (int64_t)F->place[i] * w;
-        for (int32_t c = 0; c < w; c++) {
+        for (int32_t c = 0; c < sides; c++) {
             X[c * n + i] = row[c];
         }
     }
 }
 
+/* The compiler knows the widths that matter. */
+static void load_sides(const sl_cholesky *F, const double *X, int32_t sides, int32_t w, double *Y)
+{
+    if (sides == SL_SOLVE_WIDTH && w == SL_SOLVE_WIDTH) {
+        permute_in(F, X, SL_SOLVE_WIDTH, SL_SOLVE_WIDTH, Y);
+    } else if (w == 1) {
+        permute_in(F, X, 1, 1, Y);
+    } else {
+        permute_in(F, X, sides, w, Y);
+    }
+}
+
+static void store_sides(const sl_cholesky *F, const double *Y, int32_t sides, int32_t w, double *X)
+{
+    if (sides == SL_SOLVE_WIDTH && w == SL_SOLVE_WIDTH) {
+        permute_out(F, Y, SL_SOLVE_WIDTH, SL_SOLVE_WIDTH, X);
+    } else if (w == 1) {
+        permute_out(F, Y, 1, 1, X);
+    } else {
+        permute_out(F, Y, sides, w, X);
+    }
+}
+
 void sl_cholesky_permute_in(const sl_cholesky *F, const double *X, int32_t w, double *Y)
 {
-    if (w == SL_SOLVE_WIDTH) {
-        permute_in(F, X, SL_SOLVE_WIDTH, Y); /* the compiler knows the width */
-    } else {
-        permute_in(F, X, w, Y);
-    }
+    load_sides(F, X, w, w, Y);
 }
 
 void sl_cholesky_permute_out(const sl_cholesky *F, const double *Y, int32_t w, double *X)
 {
-    if (w == SL_SOLVE_WIDTH) {
-        permute_out(F, Y, SL_SOLVE_WIDTH, X);
-    } else {
-        permute_out(F, Y, w, X);
-    }
+    store_sides(F, Y, w, w, X);
+}
+
+/* Columns of the block that `sides` right-hand sides are solved in: the kernels have a form of their own for one, and
+ * for multiples of four. */
+static int32_t block_width(int32_t sides)
+{
+    return sides >= SL_SOLVE_WIDTH ? SL_SOLVE_WIDTH : sides == 1 ? 1 : (sides + 3) / 4 * 4;
 }
 
 int64_t sl_cholesky_work_size(const sl_cholesky *F, int32_t nrhs)
 {
-    const int32_t b = nrhs < SL_SOLVE_WIDTH ? nrhs : SL_SOLVE_WIDTH;
-    return b * (int64_t)F->n + sl_cholesky_block_work_size(F, b);
+    const int32_t w = block_width(nrhs);
+    return w * (int64_t)F->n + sl_cholesky_block_work_size(F, w);
 }
 
 void sl_cholesky_solve(const sl_cholesky *F, double *X, int32_t nrhs, double *work)
 {
     const int64_t n = F->n;
     for (int32_t done = 0; done < nrhs; done += SL_SOLVE_WIDTH) {
-        const int32_t b = nrhs - done < SL_SOLVE_WIDTH ? nrhs - done : SL_SOLVE_WIDTH;
-        sl_cholesky_permute_in(F, X + n * done, b, work);
-        sl_cholesky_forward_part(F, SL_PART_ALL, work, b, work + n * b, NULL);
-        sl_cholesky_backward_part(F, SL_PART_ALL, work, b, work + n * b, NULL);
-        sl_cholesky_permute_out(F, work, b, X + n * done);
+        const int32_t left = nrhs - done, sides = left < SL_SOLVE_WIDTH ? left : SL_SOLVE_WIDTH, w = block_width(sides);
+        load_sides(F, X + n * done, sides, w, work);
+        sl_cholesky_forward_part(F, SL_PART_ALL, work, w, work + n * w, NULL);
+        sl_cholesky_backward_part(F, SL_PART_ALL, work, w, work + n * w, NULL);
+        store_sides(F, work, sides, w, X + n * done);
     }
 }
 
