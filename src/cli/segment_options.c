@@ -6,6 +6,7 @@
 static void load_def(cli_segment_options *o, sl_segment_def def)
 {
     o->def = def;
+    o->method = (int32_t)def.method;
     o->rule = (int32_t)def.rule;
     o->pairing = (int32_t)def.pairing;
     o->energy = (int32_t)def.flatten.abf.energy;
@@ -29,6 +30,12 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
     const cli_option entries[CLI_SEGMENT_OPTIONS] = {
         {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper", NULL,
          "paper = as printed; other options override"},
+        {"method", 0, CLI_CHOICE, &o->method, 0, 0, "spectral|pca|vsa", NULL,
+         "cuts by eigenvectors, or by principal axes or proxies to compare with"},
+        {"vsa-regions", 0, CLI_INT, &o->def.vsa_regions, 0, 1000000, NULL, "N",
+         "proxies of the first vsa cut, 0 = by error (0)"},
+        {"vsa-error", 0, CLI_REAL, &o->def.vsa_error, 0.0, 4.0, NULL, "E",
+         "mean |n - N|^2 at which proxies are enough (0.05)"},
         {"rule", 0, CLI_CHOICE, &o->rule, 0, 0, "longest|length-lambda|lookahead", NULL, "which passing cut is taken"},
         {"vectors", 0, CLI_INT, &o->def.vectors, 2, 1000, NULL, "N", "eigenvectors a cut (30)"},
         {"pair", 0, CLI_CHOICE, &o->pairing, 0, 0, "auto|on|off", NULL, "triangles back into quads for the graph"},
@@ -52,6 +59,7 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
 
 void cli_segment_apply(cli_segment_options *o)
 {
+    o->def.method = (sl_cut_method)o->method;
     o->def.rule = (sl_cut_rule)o->rule;
     o->def.pairing = (sl_pairing)o->pairing;
     o->def.flatten.abf.energy = (sl_abf_energy)o->energy;

@@ -123,8 +123,10 @@ static sl_status split_piece(const sl_recursion *r, sl_piece *piece, sl_chart_jo
     sl_status status = SL_OK;
     int32_t *partner = NULL;
     sl_choice choice = {0};
+    sl_segment_def def = *r->def;
+    def.vsa_regions = job->depth > 0 ? 2 : def.vsa_regions; /* many proxies once, then as any other cut */
     SL_TRY(local_partners(r, piece, &partner));
-    SL_TRY(sl_choose_cut(piece, partner, r->def, r->context, &choice));
+    SL_TRY(sl_choose_cut(piece, partner, &def, r->context, &choice));
     if (!choice.found) { /* nothing can be cut: the chart stays as it is, and says so */
         job->done = job->capped = true;
         goto cleanup;

@@ -1,7 +1,8 @@
-/* Choosing a spectral cut of one chart: the candidates, the connectivity filter, the rules. */
+/* Choosing a cut of one chart; for a spectral one the candidates, the connectivity filter, the rules. */
 #include "segment/segment_internal.h"
 
 #include "base/memory.h"
+#include "segment/baseline_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -207,10 +208,17 @@ sl_status sl_choose_cut(const sl_piece *piece, const int32_t *partner, const sl_
     cut_search s = {.piece = piece, .def = def, .context = context};
     *choice = (sl_choice){0};
     SL_TRY(build_graph(&s, partner));
-    if (s.graph->graph.n >= 2) {
+    if (s.graph->graph.n >= 2 && def->method != SL_METHOD_SPECTRAL) {
+        SL_TRY(sl_choose_baseline(piece, s.graph, def, context, choice));
+    }
+    if (s.graph->graph.n >= 2 && !choice->found) {
         SL_TRY(find_candidates(&s));
         SL_TRY(score_candidates(&s));
         SL_TRY(take_cut(&s, choice));
+        if (def->method != SL_METHOD_SPECTRAL) { /* the last resort of any method */
+            choice->vector = -1;
+            choice->candidates = 0;
+        }
     }
 cleanup:
     if (status != SL_OK) {

@@ -9,7 +9,9 @@ static const double DEFAULT_MAX_ANGLE = 1.75;
 
 sl_segment_def sl_segment_default(void)
 {
-    sl_segment_def def = {.rule = SL_RULE_LOOKAHEAD,
+    sl_segment_def def = {.method = SL_METHOD_SPECTRAL,
+                          .vsa_error = 0.05,
+                          .rule = SL_RULE_LOOKAHEAD,
                           .vectors = 30,
                           .pairing = SL_PAIR_AUTO,
                           .smooth = 2,

@@ -20,8 +20,8 @@ typedef enum sl_pairing { SL_PAIR_AUTO, SL_PAIR_ON, SL_PAIR_OFF } sl_pairing;
 /* Where cuts come from. Recursion until valid and flattening are the same for all. */
 typedef enum sl_cut_method {
     SL_METHOD_SPECTRAL, /* eigenvectors of the facet graph (paper) */
-    SL_METHOD_PCA,      /* the plane across the principal axis of largest extent, through the centre */
-    SL_METHOD_VSA       /* variational shape approximation: proxies of a chart (Cohen-Steiner et al. 2004) */
+    SL_METHOD_PCA, /* the plane across the shortest principal axis, through the centre: the "equator" of Sec. 3.3 */
+    SL_METHOD_VSA  /* variational shape approximation: proxies of a chart (Cohen-Steiner et al. 2004) */
 } sl_cut_method;
 
 /* Which symmetries are used. */
@@ -34,7 +34,7 @@ typedef enum sl_symmetry_use {
 
 typedef struct sl_segment_def {
     sl_cut_method method;     /* default spectral */
-    int32_t vsa_regions;      /* proxies of the first cut; 0 = by error (default) */
+    int32_t vsa_regions;      /* proxies of a component's first cut, then 2 a cut; 0 = by error (default) */
     double vsa_error;         /* L2,1 error over area where proxies are added no more; default 0.05 */
     sl_symmetry_use symmetry; /* default auto */
     bool test_halves;         /* after each cut, are its halves isomorphic (paper, Sec. 4.3)? default false */
@@ -66,10 +66,11 @@ typedef struct sl_chart {
 /* One split of the recursion, in the order taken. */
 typedef struct sl_split {
     int32_t depth;
-    int32_t facets; /* size of the chart split */
-    int32_t vector; /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used */
-    double lambda;
-    int32_t candidates; /* vectors that passed the filter */
+    int32_t facets;     /* size of the chart split */
+    int32_t vector;     /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used.
+                         * PCA: axis the plane lies across, 0 = shortest; VSA: proxies. -1 = a spectral cut had to do */
+    double lambda;      /* eigenvalue; PCA: variance along the axis; VSA: L2,1 error over area */
+    int32_t candidates; /* vectors that passed the filter; PCA and VSA: 1, 0 = none */
     int32_t parts;      /* charts made */
     double length;      /* seam length, normalised mesh */
     bool smoothed;
