@@ -138,3 +138,40 @@ cleanup:
     sl_free(child);
     return status;
 }
+
+/* Digits of the radix sort by rank. */
+enum { DIGIT_BITS = 11, DIGITS = 3, BUCKETS = 1 << DIGIT_BITS };
+
+/* Stable counting sort of `from` by one digit of the ranks. */
+static void sort_by_digit(int32_t count, const int32_t *rank, int digit, const int32_t *from, int32_t *to)
+{
+    int32_t next[BUCKETS] = {0}, sum = 0;
+    for (int32_t k = 0; k < count; k++) {
+        next[rank[k] >> digit * DIGIT_BITS & (BUCKETS - 1)]++;
+    }
+    for (int32_t b = 0; b < BUCKETS; b++) {
+        const int32_t size = next[b];
+        next[b] = sum;
+        sum += size;
+    }
+    for (int32_t k = 0; k < count; k++) {
+        to[next[rank[from[k]] >> digit * DIGIT_BITS & (BUCKETS - 1)]++] = from[k];
+    }
+}
+
+sl_status sl_order_by_rank(int32_t count, const int32_t *rank, int32_t *perm)
+{
+    int32_t *spare = sl_alloc(count, sizeof *spare);
+    sl_status status = SL_OK;
+    SL_TRY(spare != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t k = 0; k < count; k++) {
+        SL_TRY(rank[k] >= 0 ? SL_OK : SL_BAD_INPUT);
+        spare[k] = k;
+    }
+    sort_by_digit(count, rank, 0, spare, perm);
+    sort_by_digit(count, rank, 1, perm, spare);
+    sort_by_digit(count, rank, DIGITS - 1, spare, perm);
+cleanup:
+    sl_free(spare);
+    return status;
+}

@@ -25,4 +25,9 @@ SL_NODISCARD sl_status sl_order(const sl_csc *A, sl_ordering ordering, const dou
 SL_NODISCARD sl_status sl_order_inherit(int32_t parent_n, const int32_t *parent_perm, int32_t count,
                                         const int32_t *subset, int32_t *perm);
 
+/* perm[k] = the unknown of k-th smallest rank (ranks >= 0, equal ones by number): the ordering of a part, where the
+ * whole gave each of its unknowns the place it has in its own. No O(parent_n) in it, so the parts of a recursion may do
+ * it each for itself. SL_BAD_INPUT (a rank below 0), SL_OUT_OF_MEMORY. O(count). */
+SL_NODISCARD sl_status sl_order_by_rank(int32_t count, const int32_t *rank, int32_t *perm);
+
 #endif

@@ -4,6 +4,7 @@
 #define SL_SPECTRAL_SPECTRUM_H
 
 #include "base/context.h"
+#include "eigen/band.h"
 #include "eigen/lanczos.h"
 #include "mesh/facet_graph.h"
 
@@ -11,13 +12,35 @@
  * often as they occur. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_laplacian_create(const sl_graph *graph, sl_csc **out);
 
+typedef struct sl_spectrum_def {
+    int32_t count;        /* pairs wanted, the null space included; clipped to n; default 30 */
+    sl_lanczos_mode mode; /* how precise; default SL_LANCZOS_TOLERANCE */
+    double tolerance;     /* ||L v - lambda v|| <= tolerance ||L||_1; [1e-14, 1); default 1e-8 */
+    bool bands; /* band by band along the spectrum, for hundreds of pairs: to the tolerance, whatever the mode;
+                   default false. Source: Vallet, Levy 2008 */
+    int64_t memory_limit; /* bytes of Laplacian, results and solver together; 0 = none; default 0 */
+    const int32_t *rank;  /* n: places in an order of elimination of a larger graph that this one is a part of, >= 0,
+                             inherited instead of ordering anew; borrowed; default NULL */
+} sl_spectrum_def;
+
+sl_spectrum_def sl_spectrum_default(void);
+
 typedef struct sl_spectrum {
-    int32_t n, count; /* nodes; pairs */
-    double *lambda;   /* count, ascending, the first is 0 */
-    double *vectors;  /* n x count, column-major */
-    double *residual; /* count */
-    sl_lanczos_info info;
+    int32_t n, count;     /* nodes; pairs */
+    double *lambda;       /* count, ascending, the first is 0 */
+    double *vectors;      /* n x count, column-major */
+    double *residual;     /* count */
+    int32_t *perm;        /* n: the order of elimination used, for parts to inherit; NULL where nothing was factored */
+    sl_lanczos_info info; /* of bands: what a sl_band_info tells as well, block and patch 0 */
+    sl_band_info bands;   /* bands = 0 unless asked for */
+    int64_t memory;       /* bytes estimated before allocating: Laplacian, results, solver */
 } sl_spectrum;
+
+/* The smallest pairs of a facet graph's Laplacian as def asks for them (NULL = the default). Indicators of components
+ * are deflated as known null space. SL_BAD_INPUT (a tolerance or rank out of range), SL_LIMIT (memory_limit),
+ * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
+SL_NODISCARD sl_status sl_spectrum_solve(const sl_facet_graph *graph, const sl_spectrum_def *def,
+                                         const sl_context *context, sl_spectrum **out);
 
 /* The `count` smallest pairs of a facet graph's Laplacian (clipped to n). Indicators of components are deflated as
  * known null space. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */

@@ -154,6 +154,8 @@ static void inherited_orderings_report_memory_too(void **state)
     int32_t perm[2] = {-1, -1};
     atomic_store(&countdown, 0);
     assert_int_equal(sl_order_inherit(4, parent, 2, subset, perm), SL_OUT_OF_MEMORY);
+    atomic_store(&countdown, 0);
+    assert_int_equal(sl_order_by_rank(2, subset, perm), SL_OUT_OF_MEMORY);
     atomic_store(&countdown, -1);
     assert_int_equal(sl_order_inherit(4, parent, 2, subset, perm), SL_OK);
     assert_int_equal(perm[0], 1);

@@ -362,6 +362,54 @@ static void inherited_orderings_keep_the_order_of_the_whole(void **state)
     assert_int_equal(sl_order_inherit(3, whole, 0, good, perm), SL_OK);
 }
 
+/* Against sl_order_inherit, which has no sort in it; then ranks that are not those of a permutation. */
+static void ranks_order_a_part_as_the_whole_does(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x4a4c);
+    for (int trial = 0; trial < 60 * test_multiplier(); trial++) {
+        enum { MOST = 5000 };
+        const int32_t n = 1 + test_index(&rng, trial % 2 == 0 ? 90 : MOST);
+        int32_t *whole = malloc(MOST * sizeof *whole), *subset = malloc(MOST * sizeof *whole), count = 0;
+        int32_t *rank = malloc(MOST * sizeof *whole), *place = malloc(MOST * sizeof *whole);
+        int32_t *perm = malloc(MOST * sizeof *whole), *want = malloc(MOST * sizeof *whole);
+        for (int32_t i = 0; i < n; i++) {
+            const int32_t k = test_index(&rng, i + 1);
+            whole[i] = whole[k];
+            whole[k] = i;
+            subset[count] = i;
+            count += test_index(&rng, 3) > 0;
+        }
+        for (int32_t k = 0; k < n; k++) {
+            place[whole[k]] = k;
+        }
+        for (int32_t i = 0; i < count; i++) {
+            rank[i] = place[subset[i]];
+        }
+        assert_int_equal(sl_order_inherit(n, whole, count, subset, want), SL_OK);
+        assert_int_equal(sl_order_by_rank(count, rank, perm), SL_OK);
+        assert_memory_equal(perm, want, (size_t)count * sizeof *perm);
+        for (int32_t i = 0; i < count; i++) {
+            rank[i] = test_index(&rng, 3) == 0 ? 7 : test_index(&rng, INT32_MAX);
+        }
+        assert_int_equal(sl_order_by_rank(count, rank, perm), SL_OK);
+        assert_permutation(perm, count);
+        for (int32_t k = 1; k < count; k++) {
+            const int32_t a = perm[k - 1], b = perm[k];
+            assert_true(rank[a] < rank[b] || (rank[a] == rank[b] && a < b));
+        }
+        free(whole);
+        free(subset);
+        free(rank);
+        free(place);
+        free(perm);
+        free(want);
+    }
+    int32_t perm[2];
+    assert_int_equal(sl_order_by_rank(2, (const int32_t[]){3, -1}, perm), SL_BAD_INPUT);
+    assert_int_equal(sl_order_by_rank(0, perm, perm), SL_OK);
+}
+
 static void bad_patterns_and_points_are_bad_input(void **state)
 {
     (void)state;
@@ -457,6 +505,7 @@ int main(void)
         cmocka_unit_test(leaves_that_are_trees_are_eliminated_from_their_ends),
         cmocka_unit_test(leaves_are_eliminated_by_least_degree_and_twins_at_once),
         cmocka_unit_test(inherited_orderings_keep_the_order_of_the_whole),
+        cmocka_unit_test(ranks_order_a_part_as_the_whole_does),
         cmocka_unit_test(bad_patterns_and_points_are_bad_input),
         cmocka_unit_test(vertex_covers_are_minimum),
     };

@@ -135,6 +135,140 @@ static void signs_are_those_of_the_precise_spectrum(void **state)
     sl_mesh_free(mesh);
 }
 
+/* What is asked for by name is what the definition asks for. */
+static void the_definition_sets_count_mode_and_tolerance(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xdef);
+    sl_mesh *mesh = test_torus_mesh(&rng, 40, 30, 0.4, TEST_TRIANGLES);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    for (int exponent = 5; exponent <= 13; exponent += 4) {
+        sl_spectrum_def def = sl_spectrum_default();
+        sl_spectrum *s = NULL;
+        assert_int_equal(def.count, 30);
+        def.count = 12;
+        def.tolerance = pow(10.0, -exponent);
+        assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_OK);
+        assert_int_equal(s->count, 12);
+        assert_true(s->info.converged && s->info.certified && s->info.max_residual <= def.tolerance);
+        assert_true(largest_residual(&graph->graph, s) <= 6.5 * def.tolerance); /* ||L||_1 = 6, and our rounding */
+        sl_spectrum_free(s);
+        def.mode = SL_LANCZOS_SIGNS;
+        assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_OK);
+        assert_true(s->info.converged && s->info.max_relative <= 2e-3);
+        sl_spectrum_free(s);
+    }
+    sl_spectrum_def def = sl_spectrum_default();
+    sl_spectrum *s = (sl_spectrum *)&rng;
+    def.tolerance = 1e-15;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_BAD_INPUT);
+    assert_null(s);
+    def = sl_spectrum_default();
+    def.count = -1;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_BAD_INPUT);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+/* Bands against one run over all of them. */
+static void bands_give_the_pairs_of_a_single_run(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xba4d);
+    sl_mesh *mesh = test_spiky_mesh(&rng, 7, 5, 0.8, TEST_TRIANGLES);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    sl_spectrum_def def = sl_spectrum_default();
+    sl_spectrum *whole = NULL, *bands = NULL;
+    def.count = 170;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &whole), SL_OK);
+    assert_int_equal(whole->bands.bands, 0);
+    def.bands = true;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &bands), SL_OK);
+    assert_true(bands->bands.bands > 2 && bands->info.converged && bands->info.certified);
+    assert_int_equal(bands->count, whole->count);
+    for (int32_t k = 0; k < bands->count; k++) {
+        assert_true(test_near(bands->lambda[k], whole->lambda[k], 1e-9));
+    }
+    assert_true(largest_residual(&graph->graph, bands) < 1e-6);
+    sl_spectrum_free(whole);
+    sl_spectrum_free(bands);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+/* The estimate is refused one byte below itself; what is estimated does not depend on the limit. */
+static void a_memory_limit_is_kept_or_refused(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x11317);
+    sl_mesh *mesh = test_torus_mesh(&rng, 50, 40, 0.4, TEST_TRIANGLES);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL);
+    sl_spectrum_def def = sl_spectrum_default();
+    sl_spectrum *s = NULL;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_OK);
+    const int64_t needed = s->memory;
+    assert_true(needed > 8 * 30 * (int64_t)graph->graph.n);
+    sl_spectrum_free(s);
+    def.memory_limit = needed;
+    assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_OK);
+    assert_true(s->memory == needed);
+    sl_spectrum_free(s);
+    const int64_t too_little[] = {needed - 1, needed / 3, 1};
+    for (size_t k = 0; k < SL_COUNTOF(too_little); k++) {
+        def.memory_limit = too_little[k];
+        s = (sl_spectrum *)&rng;
+        assert_int_equal(sl_spectrum_solve(graph, &def, NULL, &s), SL_LIMIT);
+        assert_null(s);
+    }
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+}
+
+/* A half of a mesh solved with the whole's order of elimination. */
+static void a_part_inherits_the_order_of_the_whole(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x1e4e);
+    sl_mesh *mesh = test_torus_mesh(&rng, 50, 40, 0.4, TEST_TRIANGLES);
+    sl_facet_graph *graph = test_whole_graph(mesh, NULL), *half = NULL;
+    sl_spectrum *whole = NULL, *fresh = NULL, *inherited = NULL;
+    assert_int_equal(sl_spectrum_compute(graph, 5, NULL, &whole), SL_OK);
+    int32_t *place = malloc((size_t)mesh->nf * sizeof *place), *face = malloc((size_t)mesh->nf * sizeof *face);
+    int32_t *rank = malloc((size_t)mesh->nf * sizeof *rank), count = 0;
+    for (int32_t k = 0; k < whole->n; k++) {
+        place[whole->perm[k]] = k;
+    }
+    for (int32_t f = mesh->nf / 3; f < mesh->nf; f++) {
+        rank[count] = place[graph->node[f]];
+        face[count++] = f;
+    }
+    assert_int_equal(sl_facet_graph_create(mesh, face, count, NULL, &half), SL_OK);
+    sl_spectrum_def def = sl_spectrum_default();
+    def.count = 12;
+    assert_int_equal(sl_spectrum_solve(half, &def, NULL, &fresh), SL_OK);
+    def.rank = rank;
+    assert_int_equal(sl_spectrum_solve(half, &def, NULL, &inherited), SL_OK);
+    for (int32_t k = 0; k < 12; k++) {
+        assert_true(test_near(inherited->lambda[k], fresh->lambda[k], 1e-9));
+    }
+    for (int32_t k = 1; k < half->graph.n; k++) {
+        assert_true(rank[inherited->perm[k - 1]] < rank[inherited->perm[k]]);
+    }
+    assert_true(largest_residual(&half->graph, inherited) < 1e-6);
+    sl_spectrum_free(inherited);
+    rank[7] = -1;
+    assert_int_equal(sl_spectrum_solve(half, &def, NULL, &inherited), SL_BAD_INPUT);
+    assert_null(inherited);
+    sl_spectrum_free(whole);
+    sl_spectrum_free(fresh);
+    sl_facet_graph_free(half);
+    sl_facet_graph_free(graph);
+    sl_mesh_free(mesh);
+    free(place);
+    free(face);
+    free(rank);
+}
+
 static bool cancel(void *user, const char *stage, double fraction)
 {
     (void)user;
@@ -165,6 +299,10 @@ int main(void)
         cmocka_unit_test(count_is_clipped_to_the_number_of_nodes),
         cmocka_unit_test(every_component_has_its_own_null_vector),
         cmocka_unit_test(signs_are_those_of_the_precise_spectrum),
+        cmocka_unit_test(the_definition_sets_count_mode_and_tolerance),
+        cmocka_unit_test(bands_give_the_pairs_of_a_single_run),
+        cmocka_unit_test(a_memory_limit_is_kept_or_refused),
+        cmocka_unit_test(a_part_inherits_the_order_of_the_whole),
         cmocka_unit_test(a_cancelled_spectrum_is_not_delivered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
