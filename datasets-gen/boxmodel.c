@@ -6,25 +6,25 @@
 
 #include <string.h>
 
-static int32_t add_vertex(gen_cage *c, const double p[3])
+int32_t gen_cage_vertex(gen_cage *cage, const double p[3])
 {
-    if (c->failed || c->nv >= INT32_MAX / 3 ||
-        sl_reserve((void **)&c->xyz, &c->xyz_capacity, 3 * (c->nv + 1), sizeof *c->xyz) != SL_OK) {
-        c->failed = true;
+    if (cage->failed || cage->nv >= INT32_MAX / 3 ||
+        sl_reserve((void **)&cage->xyz, &cage->xyz_capacity, 3 * (cage->nv + 1), sizeof *cage->xyz) != SL_OK) {
+        cage->failed = true;
         return 0;
     }
-    memcpy(c->xyz + 3 * c->nv, p, 3 * sizeof *p);
-    return (int32_t)c->nv++;
+    memcpy(cage->xyz + 3 * cage->nv, p, 3 * sizeof *p);
+    return (int32_t)cage->nv++;
 }
 
-static void add_quad(gen_cage *c, const int32_t corner[4])
+void gen_cage_quad(gen_cage *cage, const int32_t corner[4])
 {
-    if (c->failed || c->nq >= INT32_MAX / 4 ||
-        sl_reserve((void **)&c->quad, &c->quad_capacity, 4 * (c->nq + 1), sizeof *c->quad) != SL_OK) {
-        c->failed = true;
+    if (cage->failed || cage->nq >= INT32_MAX / 4 ||
+        sl_reserve((void **)&cage->quad, &cage->quad_capacity, 4 * (cage->nq + 1), sizeof *cage->quad) != SL_OK) {
+        cage->failed = true;
         return;
     }
-    memcpy(c->quad + 4 * c->nq++, corner, 4 * sizeof *corner);
+    memcpy(cage->quad + 4 * cage->nq++, corner, 4 * sizeof *corner);
 }
 
 static void add_box_side(gen_cage *c, int32_t *made, const int32_t n[3], const double *const at[3], int axis,
@@ -41,11 +41,11 @@ static void add_box_side(gen_cage *c, int32_t *made, const int32_t n[3], const d
                 p[v] = j + (k == 2 || k == 3);
                 const int64_t slot = p[0] + (int64_t)(n[0] + 1) * (p[1] + (int64_t)(n[1] + 1) * p[2]);
                 if (made[slot] < 0) {
-                    made[slot] = add_vertex(c, (double[]){at[0][p[0]], at[1][p[1]], at[2][p[2]]});
+                    made[slot] = gen_cage_vertex(c, (double[]){at[0][p[0]], at[1][p[1]], at[2][p[2]]});
                 }
                 corner[far_end ? k : 3 - k] = made[slot];
             }
-            add_quad(c, corner);
+            gen_cage_quad(c, corner);
         }
     }
 }
@@ -123,7 +123,7 @@ static int32_t copy_vertex(gen_cage *c, int32_t v)
 {
     double p[3];
     memcpy(p, c->xyz + 3 * (int64_t)v, sizeof p);
-    return add_vertex(c, p);
+    return gen_cage_vertex(c, p);
 }
 
 void gen_cage_extrude(gen_cage *cage, const int32_t *region, int32_t count)
@@ -143,7 +143,7 @@ void gen_cage_extrude(gen_cage *cage, const int32_t *region, int32_t count)
             const int32_t a = quad[i % 4], b = quad[(i + 1) % 4];
             twin[a] = twin[a] == a ? copy_vertex(cage, a) : twin[a];
             twin[b] = twin[b] == b ? copy_vertex(cage, b) : twin[b];
-            add_quad(cage, (int32_t[]){a, b, twin[b], twin[a]});
+            gen_cage_quad(cage, (int32_t[]){a, b, twin[b], twin[a]});
         }
     }
     for (int32_t i = 0; i < 4 * count; i++) {
@@ -171,11 +171,11 @@ static void join_mirror_image(gen_cage *c)
     }
     for (int32_t v = 0; v < nv; v++) {
         const double *p = c->xyz + 3 * (int64_t)v;
-        image[v] = p[0] == 0.0 ? v : add_vertex(c, (double[]){-p[0], p[1], p[2]});
+        image[v] = p[0] == 0.0 ? v : gen_cage_vertex(c, (double[]){-p[0], p[1], p[2]});
     }
     for (int64_t q = 0; q < nq && !c->failed; q++) {
         const int32_t *quad = c->quad + 4 * q;
-        add_quad(c, (int32_t[]){image[quad[3]], image[quad[2]], image[quad[1]], image[quad[0]]});
+        gen_cage_quad(c, (int32_t[]){image[quad[3]], image[quad[2]], image[quad[1]], image[quad[0]]});
     }
     sl_free(image);
 }

@@ -22,6 +22,12 @@ typedef struct gen_station {
     double width, depth;
 } gen_station;
 
+/* Number of the new vertex. */
+int32_t gen_cage_vertex(gen_cage *cage, const double p[3]);
+
+/* A quad of vertices made before. */
+void gen_cage_quad(gen_cage *cage, const int32_t corner[4]);
+
 /* The surface of a box of n[0] x n[1] x n[2] blocks, between the grid planes at[axis][0 .. n[axis]] (ascending). In a
  * mirrored cage at[0][0] must be 0, and that side is left open. The cage must be empty. */
 void gen_cage_box(gen_cage *cage, const int32_t n[3], const double *const at[3]);
