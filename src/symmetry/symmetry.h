@@ -17,8 +17,8 @@
 
 /* How far the geometry follows a map of the connectivity. */
 typedef enum sl_symmetry_kind {
-    SL_SYMMETRY_EXACT,      /* corresponding edges agree in length within 1e-6 of the longer (def.exact) */
-    SL_SYMMETRY_NEAR,       /* an isometry of space carries the vertices onto their images within def.near */
+    SL_SYMMETRY_EXACT,      /* misfit and deviation are within def.exact: lengths alone would let a surface bend */
+    SL_SYMMETRY_NEAR,       /* an isometry of space carries the corners onto their images within def.near */
     SL_SYMMETRY_TOPOLOGICAL /* neither: reported, never used for sharing */
 } sl_symmetry_kind;
 
@@ -26,47 +26,62 @@ typedef enum sl_symmetry_kind {
 typedef struct sl_symmetry_map {
     int32_t from, to; /* components */
     int32_t count;    /* facets of either */
+    int32_t corners;  /* corners of the facets of `from` */
     int32_t *corner;  /* image of each corner of the facets of `from`, facet by facet as in sl_symmetry.face */
+    int32_t *facet;   /* image of each facet of `from`, a bijection */
     bool reverses;    /* the orientation: a mirror image */
-    int32_t order;    /* smallest k > 0 with map^k = identity; 0 for a copy (from != to) */
+    int32_t order;    /* smallest k > 0 with map^k = identity (pairs taken as one facet); 0 for a copy (from != to) */
     sl_symmetry_kind kind;
-    double misfit;       /* largest relative difference of corresponding edge lengths */
-    double deviation;    /* largest distance of a moved vertex to its image, over the component's diagonal */
+    double misfit;       /* largest difference of corresponding edge lengths, over the longer of the two */
+    double deviation;    /* largest distance of a moved corner to its image, over the component's diagonal */
     double isometry[12]; /* 3 x 4, row-major: the rigid motion (with a reflection where det < 0) that fits best */
     /* of an involution (order 2) */
     int32_t fixed_facets; /* facets that are their own images */
     int32_t axis_edges;   /* edges between a facet and its image, one an edge */
-    double axis_length;   /* of the cut that takes the halves (fixed facets with the first) apart */
+    double axis_length;   /* of the cut that takes the halves (fixed facets with the first) apart; 0 without halves */
     bool
         separates; /* removing axis edges and fixed facets leaves two sets that the map exchanges: usable for sharing */
 } sl_symmetry_map;
 
 typedef struct sl_symmetry {
     int32_t components;
-    int32_t *first;     /* components + 1: into face */
-    int32_t *face;      /* nf: facets grouped by component, ascending in each */
-    int32_t *component; /* nf */
-    int32_t *original;  /* components: the first component (by first facet) that this one is a copy of; itself if none.
-                           Copies are exact. */
+    int32_t *first;        /* components + 1: into face */
+    int32_t *face;         /* nf: facets grouped by component, ascending in each */
+    int32_t *component;    /* nf */
+    int32_t *place;        /* nf: where a facet stands in face; map->facet is indexed by place[f] - first[component] */
+    int32_t *corner_first; /* nf: where the corners of a facet begin in map->corner */
+    int32_t *unit;         /* nf: the facet itself, or the lower of its pair */
+    int32_t *original;     /* components: the first component (by first facet) that this one is a copy of; itself if
+                              none. Copies are exact. */
     int32_t nmap;
-    sl_symmetry_map *map; /* automorphisms but the identity, by component; then copies original -> component */
-    bool truncated;       /* some component has more automorphisms than SL_SYMMETRY_MOST; mirrors come first */
+    sl_symmetry_map *map; /* automorphisms but the identity, by component, mirrors first; then copies original ->
+                             component */
+    bool truncated;       /* some component may have more automorphisms than are listed */
 } sl_symmetry;
 
 typedef struct sl_symmetry_def {
-    double exact;      /* relative difference of edge lengths; default 1e-6 */
+    double exact;      /* relative difference of edge lengths, and deviation over the diagonal; default 1e-6 */
     double near;       /* deviation over the diagonal; default 1e-2 */
     bool mirrors_only; /* involutions that separate, and copies, only; default false */
+    bool of_copies;    /* also the automorphisms of copies: those of the original, moved; default false */
     int32_t most;      /* maps a component; default SL_SYMMETRY_MOST */
+    int64_t corners;   /* in all automorphisms of a component, at least one map is kept; default 2^24, which leaves 64
+                          maps to 87,000 triangles and 5 to a million */
 } sl_symmetry_def;
 
 sl_symmetry_def sl_symmetry_default(void);
 
 /* All of it. partner (nullable): facets paired as sl_pair_triangles does; a pair is then one quad, whichever way its
- * diagonal runs: its corners go to corners of the image pair at the image vertices (any of the two triangles that has
- * one). SL_OUT_OF_MEMORY, SL_CANCELLED. Near linear: signatures are refined first, and the rarest halfedge is tried
- * against all of its signature; every traversal ends at the first mismatch. A component whose regularity would cost
- * more full traversals than def->most (and some) stops there: truncated. */
+ * diagonal runs: its corners go to corners of the image pair at the image vertices (of the image facet if that has
+ * the vertex, else of its partner). Where the diagonal goes to the diagonal, triangles go to triangles at the same
+ * vertices; where the two cross, to those that share an axis edge, else the lower number to the lower.
+ *
+ * Facets are coloured by refinement first; from a halfedge of the rarest colour all of that colour are tried in both
+ * orientations, the ones whose geometry fits on the first facets before the others, and every walk ends at the first
+ * mismatch. Near linear: where regularity would cost more than a fixed multiple of the corners, the search stops:
+ * truncated. Of a component of more maps than may be listed, mirrors come first, and of these ones that stand at large
+ * angles to one another; exact maps before others. SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic.
+ * Source: paper, Sec. 4.3 (the walk); Weisfeiler & Leman 1968 (refinement). */
 SL_NODISCARD sl_status sl_symmetry_find(const sl_mesh *mesh, const int32_t *partner, const sl_symmetry_def *def,
                                         const sl_context *context, sl_symmetry **out);
 void sl_symmetry_free(sl_symmetry *symmetry); /* NULL is a no-op */
@@ -84,6 +99,13 @@ SL_NODISCARD sl_status sl_symmetry_sides(const sl_mesh *mesh, const sl_symmetry 
 
 /* Image facet of facet f of component map->from. */
 int32_t sl_symmetry_image(const sl_mesh *mesh, const sl_symmetry *symmetry, const sl_symmetry_map *map, int32_t f);
+
+/* Image corner of corner h of a facet of component map->from. */
+int32_t sl_symmetry_image_corner(const sl_mesh *mesh, const sl_symmetry *symmetry, const sl_symmetry_map *map,
+                                 int32_t h);
+
+/* Does an involution exchange the facets (pairs taken as one) on both sides of the edge of halfedge h? */
+bool sl_symmetry_on_axis(const sl_mesh *mesh, const sl_symmetry *symmetry, const sl_symmetry_map *map, int32_t h);
 
 /* Near symmetry where the connectivity has none: the mirror plane that carries the surface best onto itself
  * (candidates: the principal axes of area, then refined), by matching vertices to the nearest point of the mirrored
