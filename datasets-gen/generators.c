@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "builder.h"
+#include "organic.h"
 
 #include <string.h>
 
@@ -9,6 +10,18 @@ static const sl_generator table[] = {
     {"hand", "a left hand, closed at the wrist; quads", gen_hand, 0, 1, 0},
     {"body", "a standing person, mirror symmetric to the bit; quads", gen_body, 0, 1, 0},
     {"spiky", "a ball with fourteen spikes, their places from the seed; quads", gen_spiky, 0, 1, 0},
+    {"quadruped", "a dog standing, its tail up; quads, one mirror", gen_quadruped, 0, 1, 0},
+    {"octopus", "an octopus with eight curled arms; quads, one mirror", gen_octopus, 0, 1, 0},
+    {"starfish", "a starfish, five-fold; quads, five mirrors", gen_starfish, 0, 1, 0},
+    {"crab", "a crab with legs, claws, eyes and antennas, one closed surface; quads, one mirror", gen_crab, 0, 1, 0},
+    {"fish", "a fish with its fins spread; quads, one mirror", gen_fish, 0, 1, 0},
+    {"bird", "a bird gliding, its wings fingered; quads, one mirror", gen_bird, 0, 1, 0},
+    {"seahorse", "a seahorse, its tail in a spiral; quads, one mirror", gen_seahorse, 0, 1, 0},
+    {"snake", "a snake coiled up, its head raised; quads, no symmetry of the shape", gen_snake, 0, 1, 0},
+    {"turtle", "a sea turtle; quads, one mirror", gen_turtle, 0, 1, 0},
+    {"airplane", "an airliner with two engines; quads, one mirror", gen_airplane, 0, 1, 0},
+    {"pullover", "a pullover, open at waist, cuffs and collar; quads, one mirror", gen_pullover, 0, 1, 4},
+    {"character", "a low-polygon girl in a skirt; triangles, quads and hexagons, one mirror", gen_character, 0, 1, 0},
     {"sphere", "a sphere of meridians and parallels, triangles at the poles", gen_sphere, 0, 1, 0},
     {"torus", "a torus of quads, genus 1", gen_torus, 1, 1, 0},
     {"box", "a closed box of quads: sharp edges, flat faces", gen_box, 0, 1, 0},

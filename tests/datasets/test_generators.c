@@ -42,10 +42,12 @@ static void the_table_lists_every_shape_known_here(void **state)
     (void)state;
     int32_t count = 0;
     const sl_generator *table = sl_generators(&count);
-    assert_int_equal(count, (int32_t)SL_COUNTOF(shapes));
     for (int32_t k = 0; k < count; k++) {
-        assert_ptr_equal(sl_generator_find(table[k].name), &table[k]);
+        assert_ptr_equal(sl_generator_find(table[k].name), &table[k]); /* no name twice */
         assert_true(strlen(table[k].what) > 10);
+    }
+    for (size_t k = 0; k < SL_COUNTOF(shapes); k++) {
+        assert_non_null(sl_generator_find(shapes[k].name));
     }
     assert_null(sl_generator_find("handle"));
 }
