@@ -73,6 +73,26 @@ static int set_number(const cli_verb *verb, const cli_option *o, const char *tex
     return -1;
 }
 
+/* A number of bytes, perhaps with a letter of K, M, G or T after it. */
+static int set_size(const cli_verb *verb, const cli_option *o, const char *text)
+{
+    static const char letters[] = "KMGT";
+    char what[160];
+    const char *end = text + strlen(text);
+    const char *letter = end > text ? strchr(letters, end[-1] & ~('a' ^ 'A')) : NULL;
+    const bool scaled = letter != NULL && *letter != '\0';
+    const double scale = scaled ? (double)((int64_t)1 << 10 * (letter - letters + 1)) : 1.0;
+    const char *last = scaled ? end - 1 : end;
+    double value = 0.0;
+    const char *after = sl_parse_double(text, last, &value);
+    if (after != last || after == text || !(value * scale >= o->lo && value * scale <= o->hi)) {
+        snprintf(what, sizeof what, "--%s needs a size such as 800M or 2.5G, not", o->name);
+        return usage_error(verb, what, text);
+    }
+    *(int64_t *)o->target = (int64_t)(value * scale);
+    return -1;
+}
+
 static int set_option(const cli_verb *verb, const cli_option *o, const char *text)
 {
     char what[160];
@@ -87,6 +107,8 @@ static int set_option(const cli_verb *verb, const cli_option *o, const char *tex
     case CLI_INT:
     case CLI_REAL:
         return set_number(verb, o, text);
+    case CLI_SIZE:
+        return set_size(verb, o, text);
     case CLI_ON_OFF:
     case CLI_CHOICE:
         index = choice_index(o->kind == CLI_CHOICE ? o->choices : "off|on", text);

@@ -10,6 +10,7 @@ typedef enum cli_kind {
     CLI_ON_OFF, /* bool, from "on" or "off" */
     CLI_INT,    /* int32_t in [lo, hi] */
     CLI_REAL,   /* double in [lo, hi] */
+    CLI_SIZE,   /* int64_t bytes, from "800M" or "2.5G" (powers of 1024), at least lo and at most hi */
     CLI_TEXT,   /* const char *, borrowed from argv */
     CLI_CHOICE  /* int32_t: position in choices */
 } cli_kind;

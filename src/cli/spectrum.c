@@ -10,23 +10,26 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const cli_verb verb = {
     .name = "spectrum",
-    .usage = "seamlab spectrum IN [--vectors N] [-o OUT.ply|OUT.csv] [--pair on] [--json]",
+    .usage = "seamlab spectrum IN [--vectors N] [-o OUT.ply|OUT.csv] [options]",
     .summary = "The smallest eigenpairs of the facet graph's Laplacian D - A, and for each vector the\n"
                "cut between its positive and negative facets. The largest component is taken.",
     .examples = "  seamlab spectrum model.obj\n"
                 "  seamlab spectrum model.obj --vectors 60 -o vectors.ply\n"
-                "  seamlab spectrum model.obj -o vectors.csv --json\n",
+                "  seamlab spectrum model.obj -o vectors.csv --json\n"
+                "  seamlab spectrum model.obj --bands --vectors 500 --tolerance 1e-10\n"
+                "  seamlab spectrum model.obj --signs --memory-limit 2G\n",
     .min_files = 1,
     .max_files = 1,
 };
 
 typedef struct spectrum_options {
     cli_run run;
-    int32_t vectors;
-    bool pair;
+    sl_spectrum_def def;
+    bool pair, signs;
     const char *output;
 } spectrum_options;
 
@@ -82,6 +85,23 @@ cleanup:
     return status;
 }
 
+/* In megabytes: limits are given so. */
+static double megabytes(int64_t bytes)
+{
+    return (double)bytes / 0x1p20;
+}
+
+static sl_status solve(spectrum_work *w, const spectrum_options *o, sl_diag *diag)
+{
+    const sl_status status = sl_spectrum_solve(w->graph, &o->def, &o->run.context, &w->spectrum);
+    if (status == SL_LIMIT) {
+        sl_diag_reason(diag, "%d eigenpairs of %d nodes need more than the %.1f MB of --memory-limit", o->def.count,
+                       w->graph->graph.n, megabytes(o->def.memory_limit));
+        sl_diag_hint(diag, "ask for fewer --vectors, or for --signs only, or raise the limit");
+    }
+    return status;
+}
+
 static sl_status compute(spectrum_work *w, const spectrum_options *o, sl_diag *diag)
 {
     double fraction = 0.0;
@@ -95,10 +115,12 @@ static sl_status compute(spectrum_work *w, const spectrum_options *o, sl_diag *d
         SL_TRY(sl_pair_triangles(w->mesh, w->partner, &fraction));
     }
     SL_TRY(sl_facet_graph_create(w->mesh, w->faces, w->face_count, w->partner, &w->graph));
-    SL_TRY(sl_spectrum_compute(w->graph, o->vectors, &o->run.context, &w->spectrum));
+    SL_TRY(solve(w, o, diag));
     w->candidate = sl_calloc(w->spectrum->count, sizeof *w->candidate);
     SL_TRY(w->candidate != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(sl_cut_candidates(w->mesh, w->graph, w->spectrum, w->candidate));
+    if (w->spectrum->count > 0) {
+        SL_TRY(sl_cut_candidates(w->mesh, w->graph, w->spectrum, w->candidate));
+    }
 cleanup:
     return status;
 }
@@ -176,6 +198,14 @@ static void print_table(const spectrum_work *w)
     }
 }
 
+static void print_summary(const spectrum_work *w, cli_run *run)
+{
+    const sl_lanczos_info *info = &w->spectrum->info;
+    cli_note(run, "%d pairs, %s, largest residual %.2e, %d solves", w->spectrum->count,
+             info->certified ? "certified complete by inertia counts" : "not certified complete", info->max_residual,
+             info->solves + info->skeleton_solves);
+}
+
 static void print_json(const spectrum_work *w)
 {
     json_t *list = json_array();
@@ -193,29 +223,58 @@ static void print_json(const spectrum_work *w)
         }
         json_array_append_new(list, row);
     }
-    json_t *j = json_pack("{s:i, s:i, s:i, s:b, s:f, s:o}", "schema", 1, "facets", w->face_count, "nodes",
-                          w->spectrum->n, "converged", w->spectrum->info.converged, "max_residual",
-                          w->spectrum->info.max_residual, "vectors", list);
+    const sl_lanczos_info *info = &w->spectrum->info;
+    json_t *j = json_pack("{s:i, s:i, s:i, s:b, s:b, s:f, s:f, s:i, s:i, s:i, s:i, s:b, s:o}", "schema", 1, "facets",
+                          w->face_count, "nodes", w->spectrum->n, "converged", info->converged, "certified",
+                          info->certified, "max_residual", info->max_residual, "max_relative", info->max_relative,
+                          "solves", info->solves + info->skeleton_solves, "block", info->block, "restarts",
+                          info->restarts, "inertia_counts", info->counts, "dense", info->dense, "vectors", list);
+    if (w->spectrum->bands.bands > 0) {
+        json_object_set_new(j, "bands", json_integer(w->spectrum->bands.bands));
+        json_object_set_new(j, "factors", json_integer(w->spectrum->bands.factors));
+    } else {
+        json_object_set_new(j, "memory_estimate", json_integer(w->spectrum->memory));
+    }
     json_dumpf(j, stdout, JSON_COMPACT | JSON_REAL_PRECISION(15));
     putchar('\n');
     json_decref(j);
 }
 
+enum { SPECTRUM_OPTIONS = 7 };
+
+static void option_table(spectrum_options *o, cli_option *table)
+{
+    const cli_option own[SPECTRUM_OPTIONS] = {
+        {"vectors", 0, CLI_INT, &o->def.count, 1, 10000, NULL, "N", "pairs, the constant vector included (30)"},
+        {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "vectors on the facets: .ply or .csv"},
+        {"pair", 0, CLI_ON_OFF, &o->pair, 0, 0, NULL, NULL, "pair triangles back into quads (off)"},
+        {"bands", 0, CLI_FLAG, &o->def.bands, 0, 0, NULL, NULL, "band by band, for hundreds of vectors"},
+        {"tolerance", 0, CLI_REAL, &o->def.tolerance, 1e-14, 0.1, NULL, "TOL",
+         "|L v - lambda v| over |L|_1, at most (1e-8)"},
+        {"signs", 0, CLI_FLAG, &o->signs, 0, 0, NULL, NULL, "only as precise as the vectors' signs need, for cuts"},
+        {"memory-limit", 0, CLI_SIZE, &o->def.memory_limit, 1, 0x1p60, NULL, "SIZE",
+         "refuse (exit 6) what would need more, such as 2G"},
+    };
+    memcpy(table, own, sizeof own);
+    cli_common_options(&o->run, table + SPECTRUM_OPTIONS);
+}
+
 int cli_spectrum(int argc, char **argv)
 {
-    spectrum_options o = {.run = {.verb = verb.name}, .vectors = 30};
+    spectrum_options o = {.run = {.verb = verb.name}, .def = sl_spectrum_default()};
     const char *files[1];
     int32_t file_count = 0;
-    cli_option options[CLI_COMMON_OPTIONS + 3] = {
-        {"vectors", 0, CLI_INT, &o.vectors, 1, 1000, NULL, "N", "pairs, the constant vector included (30)"},
-        {"output", 'o', CLI_TEXT, &o.output, 0, 0, NULL, "OUT", "vectors on the facets: .ply or .csv"},
-        {"pair", 0, CLI_ON_OFF, &o.pair, 0, 0, NULL, NULL, "pair triangles back into quads (off)"},
-    };
-    cli_common_options(&o.run, options + 3);
+    cli_option options[CLI_COMMON_OPTIONS + SPECTRUM_OPTIONS];
+    option_table(&o, options);
     int code = cli_parse(&verb, options, (int32_t)SL_COUNTOF(options), argc, argv, 2, files, &file_count);
     if (code >= 0) {
         return code;
     }
+    if (o.signs && o.def.bands) {
+        fprintf(stderr, "seamlab spectrum: --signs and --bands exclude one another\n  try: seamlab spectrum --help\n");
+        return CLI_USAGE;
+    }
+    o.def.mode = o.signs ? SL_LANCZOS_SIGNS : SL_LANCZOS_TOLERANCE;
     const bool csv = o.output != NULL && cli_has_extension(o.output, ".csv");
     if (o.output != NULL && !csv && !cli_has_extension(o.output, ".ply")) {
         fprintf(stderr, "seamlab spectrum: -o writes .ply or .csv, not %s\n", o.output);
@@ -239,10 +298,11 @@ int cli_spectrum(int argc, char **argv)
         print_json(&work);
     } else if (code == CLI_DONE) {
         print_table(&work);
+        print_summary(&work, &o.run);
     }
     if (code == CLI_DONE && !work.spectrum->info.converged) {
-        cli_note(&o.run, "the solver stopped before every pair converged: largest residual %.2e",
-                 work.spectrum->info.max_residual);
+        cli_note(&o.run, "the solver stopped before every pair converged: %d of %d, largest residual %.2e",
+                 work.spectrum->info.converged_count, o.def.count, work.spectrum->info.max_residual);
         code = CLI_INFEASIBLE;
     }
     work_clear(&work);

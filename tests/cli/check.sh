@@ -154,6 +154,29 @@ contains v.csv '^facet,v0,v1'
 expect 0 "$seamlab" spectrum $mesh --vectors 8 -o v.ply --json
 contains out.txt '"converged":true'
 
+# Bands give what one run gives; each pair is certified and held to the tolerance asked for.
+expect 0 "$seamlab" spectrum $mesh --vectors 120 --tolerance 1e-10
+cut -c 1-20 out.txt >one-run.txt
+contains err.txt 'certified complete'
+expect 0 "$seamlab" spectrum $mesh --vectors 120 --tolerance 1e-10 --bands
+cut -c 1-20 out.txt | cmp -s - one-run.txt || complain 'bands and a single run give different eigenvalues'
+expect 0 "$seamlab" spectrum $mesh --vectors 120 --bands --json
+contains out.txt '"certified":true'
+contains out.txt '"bands":'
+json out.txt
+expect 0 "$seamlab" spectrum $mesh --signs --json
+contains out.txt '"certified":true'
+contains out.txt '"memory_estimate":[1-9]'
+contains out.txt '"solves":[1-9]'
+expect 0 "$seamlab" spectrum $mesh --memory-limit 2G
+expect 6 "$seamlab" spectrum $mesh --memory-limit 100k -o limited.csv
+contains err.txt 'memory-limit'
+no_file limited.csv
+expect 2 "$seamlab" spectrum $mesh --signs --bands
+for option in '--tolerance 1e-15' '--tolerance 1' '--memory-limit 2X' '--memory-limit G' '--memory-limit -1G' '--memory-limit nan' '--bands=on'; do
+    expect 2 "$seamlab" spectrum $mesh $option
+done
+
 # --- check
 expect 0 "$seamlab" check $mesh --strict
 contains out.txt 'nothing to repair'
