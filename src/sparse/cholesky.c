@@ -384,11 +384,20 @@ const int32_t *sl_cholesky_permutation(const sl_cholesky *F)
     return F->perm;
 }
 
+void sl_cholesky_release(sl_cholesky *F)
+{
+    sl_free(F->L);
+    sl_free(F->sign);
+    F->L = NULL;
+    F->sign = NULL;
+}
+
 void sl_cholesky_free(sl_cholesky *F)
 {
     if (F == NULL) {
         return;
     }
+    sl_cholesky_release(F);
     sl_free(F->perm);
     sl_free(F->place);
     sl_free(F->first);
@@ -396,8 +405,6 @@ void sl_cholesky_free(sl_cholesky *F)
     sl_free(F->below_first);
     sl_free(F->below);
     sl_free(F->panel);
-    sl_free(F->L);
-    sl_free(F->sign);
     sl_free(F->walk);
     sl_free(F->entry_first);
     sl_free(F->entry_from);

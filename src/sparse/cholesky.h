@@ -43,6 +43,9 @@ SL_NODISCARD sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32
 SL_NODISCARD sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma,
                                                   const sl_context *context, int32_t *bad_column);
 
+/* Frees L and the signs; the analysis stays, for inertia counts and further factorisations. */
+void sl_cholesky_release(sl_cholesky *F);
+
 /* X: n x nrhs, column-major, leading dimension n; B on entry, inv(A) B on return. work: sl_cholesky_work_size(F, nrhs)
  * doubles, no meaning on return, one per thread: two threads may solve with one factor. Cannot fail, allocates nothing.
  */

@@ -142,6 +142,12 @@ static void the_factor_takes_the_bytes_foretold(void **state)
         atomic_store(&allocated, 0);
         assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK);
         assert_in_range(atomic_load(&allocated), foretold - kept, foretold - kept + 16);
+        sl_cholesky_release(F);
+        sl_inertia_info info;
+        assert_int_equal(sl_inertia(F, A, -0.01, NULL, &info), SL_OK);
+        atomic_store(&allocated, 0);
+        assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK); /* all of it anew */
+        assert_in_range(atomic_load(&allocated), foretold, foretold + 16);
         sl_cholesky_free(F);
         sl_csc_free(A);
     }
