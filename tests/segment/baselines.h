@@ -1,0 +1,232 @@
+/* What the tests of the baselines share: rotated meshes, whole pieces, energies from the definition. */
+#ifndef SL_TEST_SEGMENT_BASELINES_H
+#define SL_TEST_SEGMENT_BASELINES_H
+
+#include "segment/baseline_internal.h"
+#include "segment/checks.h"
+#include "segment/vsa_internal.h"
+
+/* A random rotation; rows are orthonormal, the determinant is 1. */
+static inline void test_rotation(test_rng *rng, double R[3][3])
+{
+    double q[4], length = 0.0;
+    for (int k = 0; k < 4; k++) {
+        q[k] = test_uniform(rng, -1.0, 1.0) + (k == 0 ? 0.1 : 0.0);
+        length += q[k] * q[k];
+    }
+    for (int k = 0; k < 4; k++) {
+        q[k] /= sqrt(length);
+    }
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double m[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                            {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+    memcpy(R, m, sizeof m);
+}
+
+/* x -> R x + shift for every vertex. */
+static inline void test_move(sl_mesh *mesh, double R[3][3], const double shift[3])
+{
+    for (int32_t v = 0; v < mesh->nv; v++) {
+        double *p = mesh->xyz + 3 * v;
+        const double x[3] = {sl_vec3_dot(R[0], p), sl_vec3_dot(R[1], p), sl_vec3_dot(R[2], p)};
+        sl_vec3_add(x, shift, p);
+    }
+}
+
+static inline sl_piece *test_whole_piece(const sl_mesh *mesh, const sl_triangulation *t)
+{
+    int32_t *all = malloc((size_t)mesh->nf * sizeof *all);
+    sl_piece *piece = NULL;
+    for (int32_t f = 0; f < mesh->nf; f++) {
+        all[f] = f;
+    }
+    assert_int_equal(sl_piece_create(mesh, t, all, mesh->nf, &piece), SL_OK);
+    free(all);
+    return piece;
+}
+
+/* A closed box of half extents a, jittered lines of vertices on each edge direction, n[k] cells along axis k. The side
+ * of a facet is face_side[f] = 2 k + (positive). */
+static inline sl_mesh *test_box_mesh(test_rng *rng, const double a[3], const int32_t n[3], test_facets facets,
+                                     int32_t *face_side)
+{
+    enum { MOST = 16 };
+    double line[3][MOST + 1], *xyz = malloc(3 * 6 * (MOST + 1) * (MOST + 1) * sizeof *xyz);
+    int32_t name[MOST + 1][MOST + 1][MOST + 1], nv = 0, nf = 0, corners = 0;
+    int32_t *first = malloc((12 * MOST * MOST + 1) * sizeof *first), *index = malloc(36 * MOST * MOST * sizeof *index);
+    for (int k = 0; k < 3; k++) {
+        for (int32_t i = 0; i <= n[k]; i++) {
+            const double jitter = i > 0 && i < n[k] ? test_uniform(rng, -0.3, 0.3) : 0.0;
+            line[k][i] = a[k] * (2.0 * (i + jitter) / n[k] - 1.0);
+        }
+    }
+    memset(name, -1, sizeof name);
+    first[0] = 0;
+    for (int32_t side = 0; side < 6; side++) {
+        const int k = side / 2, u = (k + 1) % 3, v = (k + 2) % 3;
+        for (int32_t cell = 0; cell < n[u] * n[v]; cell++) {
+            int32_t quad[4];
+            for (int c = 0; c < 4; c++) {
+                int32_t at[3];
+                const int corner = side % 2 == 1 ? c : 3 - c;
+                at[k] = side % 2 == 1 ? n[k] : 0;
+                at[u] = cell / n[v] + (corner == 1 || corner == 2);
+                at[v] = cell % n[v] + (corner >= 2);
+                int32_t *q = &name[at[0]][at[1]][at[2]];
+                if (*q < 0) {
+                    *q = nv++;
+                    for (int d = 0; d < 3; d++) {
+                        xyz[3 * *q + d] = line[d][at[d]];
+                    }
+                }
+                quad[c] = *q;
+            }
+            const bool split = facets == TEST_TRIANGLES || (facets == TEST_MIXED && test_index(rng, 2) == 0);
+            const int32_t turn = test_index(rng, 2);
+            for (int32_t c = 0; c < 4; c++) {
+                index[corners++] = quad[(c + turn) % 4];
+                if (split && c == 2) {
+                    face_side[nf] = side;
+                    first[++nf] = corners;
+                    index[corners++] = quad[turn];
+                    index[corners++] = quad[2 + turn];
+                }
+            }
+            face_side[nf] = side;
+            first[++nf] = corners;
+        }
+    }
+    sl_polygons polygons = {nv, nf, xyz, first, index};
+    sl_mesh *mesh = NULL;
+    sl_diag diag = sl_diag_none();
+    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
+    free(xyz);
+    free(first);
+    free(index);
+    return mesh;
+}
+
+/* A mesh as VSA sees it, a node a facet, with areas from this file's own sums. */
+typedef struct test_surface {
+    sl_facet_graph *graph;
+    double *area, *vector;
+    sl_vsa_surface vsa;
+} test_surface;
+
+static inline void test_triangle(const sl_mesh *m, const sl_triangulation *t, int32_t i, double normal[3], double *area)
+{
+    const double *p[3];
+    double a[3], b[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = m->xyz + 3 * m->origin[t->corner[3 * i + k]];
+    }
+    sl_vec3_sub(p[2], p[1], a);
+    sl_vec3_sub(p[0], p[1], b);
+    sl_vec3_cross(a, b, normal);
+    const double length = sl_vec3_norm(normal);
+    *area = 0.5 * length;
+    for (int k = 0; k < 3; k++) {
+        normal[k] /= length;
+    }
+}
+
+static inline test_surface test_surface_of(const sl_mesh *m, const sl_triangulation *t)
+{
+    test_surface s = {.graph = test_whole_graph(m, NULL),
+                      .area = calloc((size_t)m->nf, sizeof(double)),
+                      .vector = calloc(3 * (size_t)m->nf, sizeof(double))};
+    for (int32_t f = 0; f < m->nf; f++) {
+        for (int32_t i = t->first[f]; i < t->first[f + 1]; i++) {
+            double normal[3], area;
+            test_triangle(m, t, i, normal, &area);
+            s.area[f] += area;
+            for (int k = 0; k < 3; k++) {
+                s.vector[3 * f + k] += area * normal[k];
+            }
+        }
+    }
+    s.vsa = (sl_vsa_surface){&s.graph->graph, s.area, s.vector};
+    return s;
+}
+
+static inline void test_surface_clear(test_surface *s)
+{
+    sl_facet_graph_free(s->graph);
+    free(s->area);
+    free(s->vector);
+}
+
+/* Sum over the triangles of regions a and b (b may be -1) of area |n - N|^2, N their mean normal. */
+static inline double test_region_energy(const sl_mesh *m, const sl_triangulation *t, const int32_t *region, int32_t a,
+                                        int32_t b)
+{
+    double mean[3] = {0.0, 0.0, 0.0}, energy = 0.0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t f = 0; f < m->nf; f++) {
+            for (int32_t i = t->first[f]; (region[f] == a || region[f] == b) && i < t->first[f + 1]; i++) {
+                double normal[3], d[3], area;
+                test_triangle(m, t, i, normal, &area);
+                sl_vec3_sub(normal, mean, d);
+                energy += pass == 1 ? area * sl_vec3_dot(d, d) : 0.0;
+                for (int k = 0; k < 3 && pass == 0; k++) {
+                    mean[k] += area * normal[k];
+                }
+            }
+        }
+        const double length = sl_vec3_norm(mean);
+        for (int k = 0; k < 3; k++) {
+            mean[k] /= length;
+        }
+    }
+    return energy;
+}
+
+static inline double test_energy(const sl_mesh *m, const sl_triangulation *t, const int32_t *region, int32_t count)
+{
+    double energy = 0.0;
+    for (int32_t r = 0; r < count; r++) {
+        energy += test_region_energy(m, t, region, r, -1);
+    }
+    return energy;
+}
+
+static inline bool test_regions_touch(const sl_mesh *m, const int32_t *region, int32_t a, int32_t b)
+{
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (m->twin[h] >= 0 && region[m->face[h]] == a && region[m->face[m->twin[h]]] == b) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Every number is used, and every region hangs together. */
+static inline void test_check_regions(const sl_mesh *m, const int32_t *region, int32_t count)
+{
+    int32_t *root = malloc((size_t)m->nf * sizeof *root), *parts = calloc((size_t)count, sizeof *parts);
+    for (int32_t f = 0; f < m->nf; f++) {
+        assert_in_range(region[f], 0, count - 1);
+        root[f] = f;
+    }
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int32_t h = 0; h < m->nh; h++) {
+            const int32_t f = m->face[h], g = m->twin[h] >= 0 ? m->face[m->twin[h]] : f;
+            if (region[f] == region[g] && root[g] < root[f]) {
+                root[f] = root[g];
+                changed = true;
+            }
+        }
+    }
+    for (int32_t f = 0; f < m->nf; f++) {
+        parts[region[f]] += root[f] == f;
+    }
+    for (int32_t r = 0; r < count; r++) {
+        assert_int_equal(parts[r], 1);
+    }
+    free(root);
+    free(parts);
+}
+
+#endif
