@@ -40,16 +40,19 @@ static void every_method_ends_in_valid_charts(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0x3e70);
+    int32_t deeper = 0;
     for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
         sl_mesh *mesh = shape(&rng, trial / 3);
         sl_triangulation *t = test_triangulate(mesh);
         sl_segment_def def = method(trial % 3, trial % 2 == 0 ? sl_segment_default() : sl_segment_paper());
+        def.flatten.max_stretch = trial % 3 == 1 ? 1.02 : def.flatten.max_stretch;
         sl_segmentation *s = segment(mesh, t, &def, 2);
         assert_int_equal(test_check_segmentation(mesh, t, s, def.flatten.max_stretch), 0);
         assert_true(s->nsplit > 0 && s->split[0].vector >= 0 && s->split[0].candidates == 1);
         assert_true(def.method != SL_METHOD_PCA || s->split[0].vector <= 2);
         for (int32_t k = 0; k < s->nsplit; k++) { /* as many proxies as were asked for once, then two */
             const bool first = s->split[k].depth == 0;
+            deeper += trial % 3 == 1 && !first;
             assert_true(trial % 3 != 1 || s->split[k].parts == (first ? 5 : 2));
             assert_true(trial % 3 != 1 || s->split[k].vector == s->split[k].parts);
             assert_true(trial % 3 != 2 || first || s->split[k].parts == 2);
@@ -58,6 +61,7 @@ static void every_method_ends_in_valid_charts(void **state)
         sl_triangulation_free(t);
         sl_mesh_free(mesh);
     }
+    assert_true(deeper > 4);
 }
 
 static void any_number_of_threads_gives_the_same_bytes(void **state)

@@ -181,7 +181,7 @@ static void a_flat_ring_is_cut_across_the_next_axis(void **state)
     }
     sl_mesh *mesh = test_patch_mesh(&rng, 9, 7, TEST_MIXED, drop);
     for (int32_t v = 0; v < mesh->nv; v++) {
-        mesh->xyz[3 * v + 2] = 0.25;
+        mesh->xyz[3 * v + 2] = 0.25 + test_uniform(&rng, -1e-7, 1e-7); /* as read from a file of single precision */
     }
     test_rotation(&rng, R);
     test_move(mesh, R, no_shift);

@@ -253,6 +253,40 @@ static void teleporting_lowers_the_energy_and_keeps_the_number(void **state)
     assert_true(moved >= 4);
 }
 
+static void a_move_that_does_not_help_is_taken_back(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x7e1f);
+    int32_t kept = 0, trials = 0;
+    for (int32_t k = 3; k < 15; k++) {
+        sl_mesh *mesh = body(&rng, k);
+        sl_triangulation *t = test_triangulate(mesh);
+        test_surface s = test_surface_of(mesh, t);
+        sl_vsa vsa;
+        assert_int_equal(sl_vsa_create(&s.vsa, &vsa), SL_OK);
+        for (int32_t inserted = 0; vsa.count < k; sl_vsa_grow(&vsa)) {
+            assert_int_equal(sl_vsa_insert(&vsa, 1, &inserted), SL_OK);
+            sl_vsa_fit(&vsa);
+        }
+        sl_vsa_relax(&vsa);
+        const double start = vsa.energy;
+        int32_t *before = malloc((size_t)mesh->nf * sizeof *before);
+        memcpy(before, vsa.region, (size_t)mesh->nf * sizeof *before);
+        assert_int_equal(sl_vsa_teleport(&vsa), SL_OK);
+        const bool same = memcmp(before, vsa.region, (size_t)mesh->nf * sizeof *before) == 0;
+        assert_true(same ? vsa.energy == start : vsa.energy < start);
+        assert_true(test_near_rel(vsa.energy, test_energy(mesh, t, vsa.region, k), 1e-10));
+        kept += same;
+        trials++;
+        free(before);
+        sl_vsa_clear(&vsa);
+        test_surface_clear(&s);
+        sl_triangulation_free(t);
+        sl_mesh_free(mesh);
+    }
+    assert_true(kept > 0 && kept < trials);
+}
+
 /* Whichever way the box lies and is divided: six regions are its six sides, asked for by number or by error. */
 static void six_proxies_of_a_box_are_its_sides(void **state)
 {
@@ -529,6 +563,7 @@ int main(void)
         cmocka_unit_test(every_accepted_sweep_lowers_the_energy),
         cmocka_unit_test(the_cheapest_merge_is_the_one_that_brute_force_finds),
         cmocka_unit_test(teleporting_lowers_the_energy_and_keeps_the_number),
+        cmocka_unit_test(a_move_that_does_not_help_is_taken_back),
         cmocka_unit_test(six_proxies_of_a_box_are_its_sides),
         cmocka_unit_test(a_cylinder_is_its_ends_and_staves),
         cmocka_unit_test(regions_of_a_sphere_are_connected_and_nearly_round),
