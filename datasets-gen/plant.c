@@ -1,66 +1,23 @@
 #include "plant.h"
 
 #include "base/memory.h"
+#include "locate.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 const double gen_plant_tolerance = 1e-9;
 
-/* A vertex by its coordinate along a direction in which hardly any two vertices of a model coincide. */
-typedef struct plant_key {
-    double along;
-    int32_t vertex;
-} plant_key;
-
 typedef struct plant_work {
     const sl_generated *mesh;
-    double tolerance; /* in the mesh's units */
-    bool reversed;    /* det M < 0 */
-    plant_key *key;   /* nv, ascending */
-    int32_t *first;   /* nv + 1: into facet */
-    int32_t *facet;   /* facets at each vertex, ascending */
-    uint8_t *taken;   /* larger of nv, nf */
+    bool reversed; /* det M < 0 */
+    gen_locator locator;
+    int32_t *first; /* nv + 1: into facet */
+    int32_t *facet; /* facets at each vertex, ascending */
+    uint8_t *taken; /* larger of nv, nf */
     int32_t *vertex, *face;
 } plant_work;
-
-static double along(const double p[3])
-{
-    return 0.7548776662466927 * p[0] + 0.5698402909980532 * p[1] + 0.3247179572447460 * p[2];
-}
-
-static int compare_keys(const void *a, const void *b)
-{
-    const plant_key *x = a, *y = b;
-    if (x->along != y->along) {
-        return x->along < y->along ? -1 : 1;
-    }
-    return x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
-}
-
-static double extent_of(const sl_generated *mesh)
-{
-    double extent = 0.0;
-    for (int axis = 0; axis < 3; axis++) {
-        double lo = HUGE_VAL, hi = -HUGE_VAL;
-        for (int64_t v = 0; v < mesh->nv; v++) {
-            lo = fmin(lo, mesh->xyz[3 * v + axis]);
-            hi = fmax(hi, mesh->xyz[3 * v + axis]);
-        }
-        extent = fmax(extent, hi - lo);
-    }
-    return extent;
-}
-
-static void sort_vertices(plant_work *w)
-{
-    for (int32_t v = 0; v < w->mesh->nv; v++) {
-        w->key[v] = (plant_key){along(w->mesh->xyz + 3 * (int64_t)v), v};
-    }
-    qsort(w->key, (size_t)w->mesh->nv, sizeof *w->key, compare_keys);
-}
 
 static void list_facets(plant_work *w)
 {
@@ -83,29 +40,6 @@ static void list_facets(plant_work *w)
     w->first[mesh->nv] = corners;
 }
 
-/* The vertex at p, -1 = none. */
-static int32_t vertex_at(const plant_work *w, const double p[3])
-{
-    const double here = along(p), reach = 1.5 * w->tolerance; /* the direction's length is about 1 */
-    int32_t low = 0, high = w->mesh->nv;
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        if (w->key[middle].along < here - reach) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    for (; low < w->mesh->nv && w->key[low].along <= here + reach; low++) {
-        const double *q = w->mesh->xyz + 3 * (int64_t)w->key[low].vertex;
-        if (fabs(p[0] - q[0]) <= w->tolerance && fabs(p[1] - q[1]) <= w->tolerance &&
-            fabs(p[2] - q[2]) <= w->tolerance) {
-            return w->key[low].vertex;
-        }
-    }
-    return -1;
-}
-
 static sl_status map_vertices(plant_work *w, const double m[12])
 {
     bool moved = false;
@@ -115,7 +49,7 @@ static sl_status map_vertices(plant_work *w, const double m[12])
         for (int k = 0; k < 3; k++) {
             image[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
         }
-        w->vertex[v] = vertex_at(w, image);
+        w->vertex[v] = gen_locate(&w->locator, image);
         if (w->vertex[v] < 0 || w->taken[w->vertex[v]] != 0) {
             return SL_INTERNAL;
         }
@@ -177,7 +111,7 @@ static sl_status map_facets(plant_work *w)
     return SL_OK;
 }
 
-static double determinant(const double m[12])
+double gen_determinant(const double m[12])
 {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
            m[2] * (m[4] * m[9] - m[5] * m[8]);
@@ -211,25 +145,23 @@ static sl_status append(sl_generated *mesh, const char *name, const double matri
 
 sl_status gen_plant(sl_generated *mesh, const char *name, const double matrix[12], bool exact)
 {
-    plant_work w = {.mesh = mesh, .reversed = determinant(matrix) < 0.0};
+    plant_work w = {.mesh = mesh, .reversed = gen_determinant(matrix) < 0.0};
     sl_status status = SL_OK;
-    w.tolerance = gen_plant_tolerance * extent_of(mesh);
-    w.key = sl_alloc(mesh->nv, sizeof *w.key);
     w.first = sl_calloc((int64_t)mesh->nv + 2, sizeof *w.first);
     w.facet = sl_alloc(mesh->face_first[mesh->nf], sizeof *w.facet);
     w.taken = sl_calloc(mesh->nv > mesh->nf ? mesh->nv : mesh->nf, sizeof *w.taken);
     w.vertex = sl_alloc(mesh->nv, sizeof *w.vertex);
     w.face = sl_alloc(mesh->nf, sizeof *w.face);
-    if (w.key == NULL || w.first == NULL || w.facet == NULL || w.taken == NULL || w.vertex == NULL || w.face == NULL) {
+    if (w.first == NULL || w.facet == NULL || w.taken == NULL || w.vertex == NULL || w.face == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    sort_vertices(&w);
+    SL_TRY(gen_locator_init(&w.locator, mesh->xyz, mesh->nv, gen_plant_tolerance));
     list_facets(&w);
     SL_TRY(map_vertices(&w, matrix));
     SL_TRY(map_facets(&w));
     SL_TRY(append(mesh, name, matrix, exact, &w));
 cleanup:
-    sl_free(w.key);
+    gen_locator_clear(&w.locator);
     sl_free(w.first);
     sl_free(w.facet);
     sl_free(w.taken);

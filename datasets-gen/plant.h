@@ -8,6 +8,9 @@
 /* A vertex lies at its image when it is nearer than this share of the mesh's extent. */
 extern const double gen_plant_tolerance;
 
+/* Of the 3 x 3 part of a 3 x 4 matrix. */
+double gen_determinant(const double matrix[12]);
+
 /* Appends the symmetry x -> M x + t (matrix: 3 x 4, row-major, M | t) to mesh->planted, with the image of each vertex
  * and facet; facets go to facets of the same cyclic order, reversed where det M < 0. SL_OUT_OF_MEMORY; SL_INTERNAL when
  * some vertex or facet has no image, two have the same, or the map is the identity: a bug of the generator (the mesh is
@@ -28,8 +31,23 @@ SL_NODISCARD sl_status gen_plant_dihedral(sl_generated *mesh, int axis, int32_t 
 
 enum { gen_most_mirrors = 12 };
 
+/* The rotation by `angle` about the line through the origin along `axis` (any length but 0). */
+SL_NODISCARD sl_status gen_plant_rotation(sl_generated *mesh, const char *name, const double axis[3], double angle,
+                                          bool exact);
+
+/* Mirrors in the planes x = 0, y = 0, z = 0, those whose letter stands in `axes` ("xz"). */
+SL_NODISCARD sl_status gen_plant_mirrors(sl_generated *mesh, const char *axes, bool exact);
+
+/* The symmetries of a square prism about z (5 mirrors, a quarter turn), and of a cube (9 mirrors, a quarter turn, a
+ * third of a turn about a diagonal), their middle at the origin. */
+SL_NODISCARD sl_status gen_plant_prism(sl_generated *mesh, bool exact);
+SL_NODISCARD sl_status gen_plant_cube(sl_generated *mesh, bool exact);
+
 /* Says that the mirrored surface lies close to the surface, though no map of vertices and facets does it. */
 SL_NODISCARD sl_status gen_plant_near(sl_generated *mesh, const char *name, const double matrix[12]);
+
+/* Takes all planted symmetries out again: positions have been moved. */
+void gen_forget(sl_generated *mesh);
 
 /* A generator's end: frees *out and makes it NULL when planting failed. */
 SL_NODISCARD sl_status gen_planted(sl_status status, sl_generated **out);

@@ -1,6 +1,7 @@
 /* Shapes with a formula: sphere, torus, box. */
 #include "base/memory.h"
 #include "builder.h"
+#include "grid.h"
 #include "plant.h"
 
 #include <math.h>
@@ -17,20 +18,10 @@ static sl_status plant_round(int32_t n, sl_generated **out)
     return gen_planted(status, out);
 }
 
-/* Doubles with each step of scale: four times the facets. */
-static int32_t refined(int32_t base, int32_t scale)
-{
-    int64_t n = base;
-    for (int32_t k = 1; k < scale && n < 100000; k++) {
-        n *= 2;
-    }
-    return (int32_t)n;
-}
-
 sl_status gen_sphere(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed; /* nothing random */
-    const int32_t rings = refined(36, scale), sectors = 2 * rings;
+    const int32_t rings = gen_refined(36, scale), sectors = 2 * rings;
     gen_builder b = {0};
     const int32_t south = gen_vertex(&b, 0.0, -1.0, 0.0);
     for (int32_t i = 1; i < rings; i++) {
@@ -57,7 +48,7 @@ sl_status gen_sphere(uint64_t seed, int32_t scale, sl_generated **out)
 sl_status gen_torus(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed;
-    const int32_t m = refined(72, scale), n = refined(36, scale);
+    const int32_t m = gen_refined(72, scale), n = gen_refined(36, scale);
     const double major = 1.0, minor = 0.38;
     gen_builder b = {0};
     for (int32_t i = 0; i < m; i++) {
@@ -109,7 +100,7 @@ static void box_side(gen_builder *b, int32_t *made, const int32_t n[3], int axis
 sl_status gen_box(uint64_t seed, int32_t scale, sl_generated **out)
 {
     (void)seed;
-    const int32_t n[3] = {refined(26, scale), refined(16, scale), refined(20, scale)};
+    const int32_t n[3] = {gen_refined(26, scale), gen_refined(16, scale), gen_refined(20, scale)};
     const int64_t slots = (int64_t)(n[0] + 1) * (n[1] + 1) * (n[2] + 1);
     gen_builder b = {0};
     int32_t *made = sl_alloc(slots, sizeof *made);
@@ -126,9 +117,8 @@ sl_status gen_box(uint64_t seed, int32_t scale, sl_generated **out)
     }
     sl_free(made);
     sl_status status = gen_finish(&b, out);
-    for (int axis = 0; axis < 3 && status == SL_OK; axis++) {
-        const char name[] = {'m', 'i', 'r', 'r', 'o', 'r', ' ', "xyz"[axis], '\0'};
-        status = gen_plant_mirror(*out, name, axis == 0, axis == 1, axis == 2, true);
+    if (status == SL_OK) {
+        status = gen_plant_mirrors(*out, "xyz", true);
     }
     return gen_planted(status, out);
 }
