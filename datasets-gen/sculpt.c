@@ -86,15 +86,6 @@ void gen_push(gen_cage *cage, const double (*at)[3], int32_t count, const double
     }
 }
 
-void gen_shape(gen_cage *cage, const double (*at)[3], int32_t count, const double move[3], const double scale[3])
-{
-    int32_t region[GEN_MAX_REGION];
-    const int32_t found = gen_pick(cage, at, count, region);
-    if (found > 0 && !cage->failed) {
-        move_region(cage, region, found, move, scale);
-    }
-}
-
 void gen_bump(gen_cage *cage, const double at[3], const double out[3], double radius)
 {
     static const double reach[3] = {0.15, 0.75, 1.15}, girth[3] = {1.25, 1.45, 0.80};

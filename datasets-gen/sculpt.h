@@ -19,9 +19,6 @@ void gen_grow(gen_cage *cage, const double (*at)[3], int32_t count, const double
  * centroid (in the mirror plane when the region touches it; its vertices in the plane stay there). */
 void gen_push(gen_cage *cage, const double (*at)[3], int32_t count, const double move[3], const double scale[3]);
 
-/* The same without extrusion: the vertices of the quads are moved where they are. */
-void gen_shape(gen_cage *cage, const double (*at)[3], int32_t count, const double move[3], const double scale[3]);
-
 /* A rounded bump of that radius, an eye for instance, grown towards `out` from the quad nearest to a point. */
 void gen_bump(gen_cage *cage, const double at[3], const double out[3], double radius);
 
