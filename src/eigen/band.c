@@ -186,7 +186,7 @@ static sl_status take_band(run *r, const int32_t *index, int32_t expected)
     SL_TRY(values != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     SL_TRY(sl_panels_create(r->n, expected, &X));
     sl_krylov_select(&r->krylov, index, expected);
-    SL_TRY(sl_krylov_vectors(&r->krylov, expected, &X));
+    SL_TRY(sl_krylov_vectors(&r->krylov, expected, expected, &X));
     SL_TRY(sl_panels_rayleigh_ritz(&X, expected, &r->rows, r->norm, values, values + expected, r->context));
     deliver(r, &X, expected, values, values + expected);
 cleanup:

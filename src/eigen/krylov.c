@@ -8,6 +8,9 @@
 /* A block that keeps less than this share of its length is orthogonalised again: cancellation has cost it digits. */
 static const double kept_share = 1e-2;
 
+/* The basis is looked at again once so much of the way that is left, by the pace so far, lies behind. */
+static const double look_share = 0.8;
+
 /* Every second block is looked back at: the three-term recurrence hands what is left in the others on undiminished, but
  * hardly magnified. */
 enum { look_back_every = 2 };
@@ -66,6 +69,18 @@ void sl_krylov_clear(sl_krylov *k)
     sl_free(k->lapack);
     sl_free(k->lapack_int);
     *k = (sl_krylov){.fixed = 0};
+}
+
+void sl_krylov_seen(const sl_krylov *k, sl_krylov_watch *watch, double worst)
+{
+    watch->look = k->applied;
+    if (watch->before > 0 && isfinite(watch->worst) && worst < watch->worst) {
+        const double pace = log(watch->worst / worst) / (k->applied - watch->before);
+        const double left = look_share * log(worst) / pace;
+        watch->look += left < 1e6 ? (int32_t)left : 0;
+    }
+    watch->before = k->applied;
+    watch->worst = worst;
 }
 
 /* P, the block at column `at`, will become P - Q E. H's rows for it are corrected to (P - Q E)'W; `corrected` are the
@@ -241,17 +256,17 @@ void sl_krylov_select(sl_krylov *k, const int32_t *index, int32_t count)
     k->found = count;
 }
 
-/* copy (rows x count, column-major) = S moved down by the fixed columns, with B s / theta under it if extended. */
-static int32_t coefficients(sl_krylov *k, int32_t count, bool extended)
+/* copy (rows x count, column-major) = S, with B s / theta under the first `extended` columns. */
+static int32_t coefficients(sl_krylov *k, int32_t count, int32_t extended)
 {
-    const int32_t m = k->applied, rows = m + (extended ? k->pending : 0);
+    const int32_t m = k->applied, rows = m + (extended > 0 ? k->pending : 0);
     const int64_t ld = (int64_t)k->max_basis + k->block;
     for (int32_t j = 0; j < count; j++) {
         double *c = k->copy + (int64_t)j * rows;
         memcpy(c, k->S + (int64_t)j * m, (size_t)m * sizeof *c);
         for (int32_t i = m; i < rows; i++) {
             c[i] = 0.0;
-            for (int32_t l = 0; l < m; l++) {
+            for (int32_t l = 0; l < m && j < extended; l++) {
                 c[i] += k->T[l * ld + i] * c[l] / k->theta[j];
             }
         }
@@ -275,9 +290,9 @@ static sl_status rotate(sl_krylov *k, int32_t rows, int32_t count, sl_panels *X)
     return status;
 }
 
-sl_status sl_krylov_vectors(sl_krylov *k, int32_t count, sl_panels *X)
+sl_status sl_krylov_vectors(sl_krylov *k, int32_t count, int32_t extended, sl_panels *X)
 {
-    const int32_t rows = coefficients(k, count, true);
+    const int32_t rows = coefficients(k, count, extended);
     return rotate(k, rows, count, X);
 }
 

@@ -40,6 +40,22 @@ typedef struct sl_krylov {
     lapack_int *lapack_int;
 } sl_krylov;
 
+/* When to look at the Ritz pairs next, by how fast the logarithm of the worst error fell since the last look. */
+typedef struct sl_krylov_watch {
+    int32_t look;   /* columns at which to look */
+    int32_t before; /* columns at the last look; 0 = none */
+    double worst;   /* error then, over what is allowed */
+} sl_krylov_watch;
+
+/* Whether it is time, or the basis is full. */
+static inline bool sl_krylov_looks(const sl_krylov *k, const sl_krylov_watch *watch)
+{
+    return k->applied >= watch->look || k->applied + k->w > k->max_basis;
+}
+
+/* What was seen. */
+void sl_krylov_seen(const sl_krylov *k, sl_krylov_watch *watch, double worst);
+
 /* Bytes of a basis and what belongs to it. */
 int64_t sl_krylov_bytes(int64_t rows, int32_t fixed, int32_t block, int32_t max_basis);
 
@@ -72,9 +88,10 @@ SL_NODISCARD sl_status sl_krylov_ritz(sl_krylov *k, int32_t count);
 /* Makes the Ritz pairs index[0] < index[1] < ... the leading ones; the others are forgotten. */
 void sl_krylov_select(sl_krylov *k, const int32_t *index, int32_t count);
 
-/* X := the leading `count` Ritz vectors plus P B s / theta, that is OP x / theta: an inverse iteration for nothing.
- * X: nullable; if NULL they take the place of the basis's first columns, which is then spent. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_krylov_vectors(sl_krylov *k, int32_t count, sl_panels *X);
+/* X := the leading `count` Ritz vectors; the first `extended` of them plus P B s / theta, that is OP x / theta: an
+ * inverse iteration for nothing. X: nullable; if NULL they take the place of the basis's first columns, which is then
+ * spent. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_krylov_vectors(sl_krylov *k, int32_t count, int32_t extended, sl_panels *X);
 
 /* Keeps the leading `kept` Ritz vectors and the pending block. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_krylov_restart(sl_krylov *k, int32_t kept);

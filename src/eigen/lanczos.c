@@ -95,11 +95,9 @@ static sl_status allocate(sl_lanczos *s)
 {
     s->lambda = sl_calloc(s->columns, sizeof *s->lambda);
     s->residual = sl_calloc(s->columns, sizeof *s->residual);
-    s->partial = sl_alloc(sl_panels_partial_size(s->n, s->null_count), sizeof *s->partial);
-    s->H = sl_calloc(((int64_t)s->null_count + SL_PANEL) * SL_PANEL, sizeof *s->H);
+    s->N = sl_alloc((int64_t)s->n * s->null_count, sizeof *s->N);
     s->solve_work = sl_alloc(sl_cholesky_block_work_size(s->factor, SL_PANEL), sizeof *s->solve_work);
-    const bool ok =
-        s->lambda != NULL && s->residual != NULL && s->partial != NULL && s->H != NULL && s->solve_work != NULL;
+    const bool ok = s->lambda != NULL && s->residual != NULL && s->N != NULL && s->solve_work != NULL;
     return ok ? SL_OK : SL_OUT_OF_MEMORY;
 }
 
@@ -118,17 +116,12 @@ static sl_status factor_shifted(sl_lanczos *s)
     SL_TRY(sl_cholesky_factor_shifted(s->factor, s->A, s->sigma, s->context, NULL));
     s->perm = sl_copy(sl_cholesky_permutation(s->factor), s->n, sizeof *s->perm);
     SL_TRY(s->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(sl_rows_create(s->A, s->perm, &s->rows));
-    SL_TRY(sl_panels_create(s->n, s->null_count, &s->N));
-    if (s->stage == SL_STAGE_SKELETON) {
-        SL_TRY(sl_panels_create(s->n, s->columns, &s->X));
-    }
     SL_TRY(allocate(s));
     for (int32_t k = 0; k < s->null_count; k++) {
-        double *to = sl_panel_at(&s->N, k / SL_PANEL) + k % SL_PANEL;
+        double *to = s->N + (int64_t)s->n * k;
         const double *from = s->def.null_space + (int64_t)s->n * k;
-        for (int64_t i = 0; i < s->n; i++) {
-            to[i * SL_PANEL] = from[s->perm[i]];
+        for (int32_t i = 0; i < s->n; i++) {
+            to[i] = from[s->perm[i]];
         }
     }
 cleanup:
@@ -286,12 +279,10 @@ void sl_lanczos_free(sl_lanczos *s)
     }
     release(s);
     sl_free(s->perm);
-    sl_panels_clear(&s->N);
+    sl_free(s->N);
     sl_panels_clear(&s->X);
     sl_free(s->lambda);
     sl_free(s->residual);
-    sl_free(s->partial);
-    sl_free(s->H);
     sl_free(s->dense_X);
     sl_free(s->dense_lambda);
     sl_free(s->dense_residual);

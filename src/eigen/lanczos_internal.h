@@ -30,15 +30,14 @@ struct sl_lanczos {
     const sl_context *context; /* borrowed */
     sl_cholesky *factor;
     int32_t *perm; /* its permutation */
-    sl_rows rows;  /* A in the factor's order */
+    sl_rows rows;  /* A in the factor's order; made when first needed */
     double *solve_work;
-    sl_panels N; /* null space */
+    double *N; /* null space, n x null_count, column-major */
     sl_panels X;
     bool have_pairs;
     double *lambda, *residual; /* columns: of X; residuals are not divided by ||A||_1 */
     sl_krylov krylov;          /* plain start only; empty otherwise */
     bool krylov_live, krylov_tried;
-    double *partial, *H;   /* of projections on the null space */
     double previous_worst; /* of the residuals over their bounds, one iteration ago; 0 = none */
     bool extended;         /* guards were let converge for a count once */
     bool widest;           /* no larger block fits the space: LAPACK takes over */
@@ -82,8 +81,8 @@ double sl_lanczos_bound(const sl_lanczos *s, double lambda);
  * rounding puts there after. */
 void sl_lanczos_apply(sl_lanczos *s, double *W, int32_t w);
 
-/* Takes the null space out of W. */
-void sl_lanczos_deflate(sl_lanczos *s, double *W, int32_t w);
+/* Takes the null space out of a panel. */
+void sl_lanczos_deflate(sl_lanczos *s, double *W);
 
 /* certify.c: decides the next stage: done, or more pairs, or a larger block. */
 SL_NODISCARD sl_status sl_lanczos_certify(sl_lanczos *s);

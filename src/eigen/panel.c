@@ -208,6 +208,49 @@ void sl_panels_divide(int32_t rows, double *W, int32_t w, const double *R, doubl
     add_partials(&s, rows, 0, s.stride, G);
 }
 
+/* One vector against one panel. */
+typedef struct removal {
+    const double *v;
+    double *W;
+    double share[SL_PANEL];
+    double sums[MAX_CHUNKS][SL_PANEL];
+} removal;
+
+static void share_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    removal *t = user;
+    double sum[SL_PANEL] = {0.0};
+    for (int64_t r = begin; r < end; r++) {
+        for (int32_t c = 0; c < SL_PANEL; c++) {
+            sum[c] += t->v[r] * t->W[r * SL_PANEL + c];
+        }
+    }
+    memcpy(t->sums[chunk], sum, sizeof sum);
+}
+
+static void remove_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const removal *t = user;
+    for (int64_t r = begin; r < end; r++) {
+        for (int32_t c = 0; c < SL_PANEL; c++) {
+            t->W[r * SL_PANEL + c] -= t->v[r] * t->share[c];
+        }
+    }
+}
+
+void sl_panel_remove(int32_t rows, const double *v, double *W, const sl_context *context)
+{
+    removal t = {.v = v, .W = W};
+    sl_parallel_for(context, rows, chunk_rows(rows), share_chunk, &t);
+    for (int32_t k = 0; k < sl_chunk_count(rows, chunk_rows(rows)); k++) {
+        for (int32_t c = 0; c < SL_PANEL; c++) {
+            t.share[c] += t.sums[k][c];
+        }
+    }
+    sl_parallel_for(context, rows, chunk_rows(rows), remove_chunk, &t);
+}
+
 /* Lanes of a block at column `at` that lie in the first of the two panels it may touch. */
 static int32_t first_part(int32_t at, int32_t w)
 {

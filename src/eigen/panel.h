@@ -56,6 +56,9 @@ void sl_panels_project(const sl_panels *M, int32_t columns, const sl_panel_pair 
 void sl_panels_subtract(const sl_panels *M, int32_t columns, const sl_panel_pair *pair, double *partial, double *G,
                         const sl_context *context);
 
+/* W -= v v'W for one panel W (rows x 8) and a unit vector v. */
+void sl_panel_remove(int32_t rows, const double *v, double *W, const sl_context *context);
+
 /* W := W R^-1, R w x w upper triangular (R[i * w + j]), then G = W' W. */
 void sl_panels_divide(int32_t rows, double *W, int32_t w, const double *R, double *partial, double *G,
                       const sl_context *context);

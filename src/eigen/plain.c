@@ -7,9 +7,6 @@
 /* Estimates stop at this share of the bound: recomputed residuals then meet it with room for rounding. */
 static const double stop_share = 0.5;
 
-/* The basis is looked at again once so much of the way that is left, by the pace so far, lies behind. */
-static const double look_share = 0.8;
-
 /* The null space is the basis's fixed part: its sweeps take it out. */
 static void apply_inverse(void *user, double *W, int32_t w)
 {
@@ -22,12 +19,8 @@ sl_status sl_lanczos_begin_plain(sl_lanczos *s)
     sl_krylov_clear(&s->krylov);
     s->krylov_live = false;
     SL_TRY(sl_krylov_init(s->n, s->null_count, s->block, s->max_basis, s->def.seed, s->context, &s->krylov));
-    for (int32_t p = 0; p < sl_panel_count(s->null_count); p++) { /* the null space starts the basis: same panels */
-        const double *from = sl_panel_at(&s->N, p);
-        double *to = sl_panel_at(&s->krylov.Q, p);
-        for (int64_t i = 0; i < (int64_t)s->n * SL_PANEL; i++) {
-            to[i] = from[i];
-        }
+    for (int32_t c = 0; c < s->null_count; c++) {
+        sl_panels_store(&s->krylov.Q, c, s->N + (int64_t)c * s->n, 1);
     }
     s->krylov.apply = apply_inverse;
     s->krylov.user = s;
@@ -57,22 +50,11 @@ static double estimate_worst(const sl_lanczos *s)
     return worst;
 }
 
-/* Columns at which to look again, by how fast the logarithm of the worst residual fell since the last look. */
-static int32_t next_look(int32_t before, double worst_before, int32_t now, double worst)
-{
-    if (before == 0 || !isfinite(worst_before) || !(worst < worst_before)) {
-        return now;
-    }
-    const double pace = log(worst_before / worst) / (now - before);
-    const double left = look_share * log(worst) / pace;
-    return left < 1e6 ? now + (int32_t)left : now;
-}
-
 /* X := the leading Ritz vectors. The basis makes way for them, or stays for more. */
 static sl_status take_vectors(sl_lanczos *s, bool basis_stays)
 {
     sl_status status = SL_OK;
-    SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, basis_stays ? &s->X : NULL));
+    SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, s->columns, basis_stays ? &s->X : NULL));
     if (!basis_stays) {
         sl_panels_clear(&s->X);
         SL_TRY(sl_panels_take(&s->krylov.Q, s->columns, &s->X));
@@ -80,7 +62,7 @@ static sl_status take_vectors(sl_lanczos *s, bool basis_stays)
         s->krylov_live = false;
     }
     for (int32_t p = 0; p < sl_panel_count(s->columns); p++) { /* the last block was projected once only */
-        sl_lanczos_deflate(s, sl_panel_at(&s->X, p), SL_PANEL);
+        sl_lanczos_deflate(s, sl_panel_at(&s->X, p));
     }
     SL_TRY(sl_lanczos_rayleigh_ritz(s));
 cleanup:
@@ -109,24 +91,20 @@ sl_status sl_lanczos_fill(sl_lanczos *s)
 {
     sl_krylov *b = &s->krylov;
     sl_status status = SL_OK;
-    int32_t look = 2 * s->wanted + 4 * s->block, before = 0;
-    double worst = INFINITY;
+    const int32_t first = 2 * s->wanted + 4 * s->block, least = s->columns + s->block;
+    sl_krylov_watch watch = {.look = first > least ? first : least, .worst = INFINITY};
     if (!s->krylov_live) {
         SL_TRY(sl_lanczos_begin_plain(s));
     }
-    look = look < s->columns + s->block ? s->columns + s->block : look;
-    while (worst > 1.0 && b->applied + b->w <= b->max_basis) {
+    while (watch.worst > 1.0 && b->applied + b->w <= b->max_basis) {
         SL_TRY(sl_report_progress(s->context, "eigenvectors", (double)b->applied / b->max_basis));
         sl_krylov_expand(b);
-        if (b->applied >= look || b->applied + b->w > b->max_basis) {
-            const double last = worst;
+        if (sl_krylov_looks(b, &watch)) {
             SL_TRY(sl_krylov_ritz(b, s->columns));
-            worst = estimate_worst(s);
-            look = next_look(before, last, b->applied, worst);
-            before = b->applied;
+            sl_krylov_seen(b, &watch, estimate_worst(s));
         }
     }
-    if (worst > 1.0) {
+    if (watch.worst > 1.0) {
         SL_TRY(restart(s));
     } else {
         SL_TRY(take_vectors(s, false));

@@ -77,7 +77,11 @@ void sl_lanczos_result(const sl_lanczos *s, double *lambda, double *vectors, dou
     if (residual != NULL) {
         memset(residual, 0, (size_t)s->count * sizeof *residual);
     }
-    copy_columns(s, &s->N, s->null_count, vectors);
+    for (int32_t k = 0; k < s->null_count; k++) {
+        double *to = vectors + (int64_t)s->n * k;
+        memcpy(to, s->def.null_space + (int64_t)s->n * k, (size_t)s->n * sizeof *to);
+        sl_lanczos_sign_rule(s->n, to);
+    }
     if (!s->have_pairs) {
         memset(computed, 0, (size_t)s->n * (size_t)s->wanted * sizeof *computed);
         return;

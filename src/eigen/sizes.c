@@ -11,20 +11,20 @@ static const int32_t dense_order = 200;
 static const int32_t wide_block_order = 100000;
 
 /* The skeleton pays from these orders on. */
-static const int32_t skeleton_order_signs = 20000;
-static const int32_t skeleton_order_tolerance = 150000;
+static const int32_t skeleton_order_signs = 4000;
+static const int32_t skeleton_order_tolerance = 30000;
 
 /* lambda_k of a surface's facet graph is about this times k / n (Weyl's law; measured on closed surfaces). */
 static const double weyl_slope = 6.5;
 
-/* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(7/4) in vectors
+/* Measured: patches of m unknowns leave an error of about skeleton_error (lambda m / skeleton_reach)^(3/2) in vectors
  * of eigenvalue lambda after one inverse iteration. */
-static const double skeleton_error = 1.05e-3, skeleton_reach = 0.18, skeleton_power = 1.75;
+static const double skeleton_error = 7.5e-4, skeleton_reach = 0.38, skeleton_power = 1.5;
 
 /* Of the allowed error that the patches may use up. */
 static const double patch_safety = 0.6;
 
-enum { LEAST_PATCH = 64, MOST_PATCH = 4096 };
+enum { LEAST_PATCH = 16, MOST_PATCH = 4096 };
 
 static int32_t round_up(int32_t value, int32_t step)
 {
@@ -75,8 +75,7 @@ void sl_lanczos_choose_sizes(sl_lanczos *s, bool *dense)
     *dense = s->n <= dense_order || !sl_lanczos_choose_basis(s);
     s->columns = round_up(s->wanted + 3, SL_PANEL);
     const bool skeleton = !*dense && choose_skeleton(s);
-    if (skeleton) { /* guards damp the error of the last pairs wanted: measured, a quarter more is enough */
-        s->columns = round_up(s->wanted + s->wanted / 4 + 2, SL_PANEL);
+    if (skeleton) {
         s->info.patch = s->def.patch > 0 ? s->def.patch : choose_patch(s);
     }
     s->info.block = *dense ? 0 : s->block;
@@ -91,11 +90,11 @@ int64_t sl_lanczos_estimate(const sl_lanczos *s, bool dense)
     }
     const int64_t ordering = 16 * index * n + 4 * index * entries;
     if (s->factor == NULL) { /* before the analysis: L has at least A's entries */
-        return ordering + real * entries + sl_panels_bytes(n, s->null_count + s->columns);
+        return ordering + real * entries + sl_panels_bytes(n, s->columns) + real * n * s->null_count;
     }
     const int64_t factor = real * sl_cholesky_nnz(s->factor) + 6 * index * n + 3 * index * entries;
     const int64_t rows = (2 * entries - n) * (real + index) + real * n;
-    const int64_t vectors = sl_panels_bytes(n, s->columns) + sl_panels_bytes(n, s->null_count);
+    const int64_t vectors = sl_panels_bytes(n, s->columns) + real * n * s->null_count;
     const int64_t work = real * sl_cholesky_block_work_size(s->factor, SL_PANEL);
     const int64_t first = sl_cholesky_top_first(s->factor);
     const int64_t basis = s->stage == SL_STAGE_SKELETON
