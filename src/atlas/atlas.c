@@ -21,9 +21,10 @@ sl_atlas_def sl_atlas_default(void)
     };
 }
 
-/* Charts as the packer wants them: UVs by corner, triangles by position in the chart. */
+/* Charts as the packer wants them, copies left out: UVs by corner, triangles by position in the chart. */
 typedef struct pack_input {
-    sl_pack_chart *chart; /* nchart, into the arrays below */
+    int32_t count;
+    sl_pack_chart *chart; /* count, into the arrays below */
     double *uv;           /* 2 nh */
     int32_t *tri;         /* 3 nt */
 } pack_input;
@@ -47,7 +48,10 @@ static sl_status pack_input_init(const sl_atlas *atlas, pack_input *input)
     }
     int64_t corners = 0, triangles = 0;
     for (int32_t c = 0; c < seg->nchart; c++) {
-        sl_pack_chart *chart = &input->chart[c];
+        if (seg->chart[c].copy_of >= 0) {
+            continue;
+        }
+        sl_pack_chart *chart = &input->chart[input->count++];
         chart->uv = input->uv + 2 * corners;
         chart->tri = input->tri + 3 * triangles;
         for (int32_t i = seg->chart[c].first; i < seg->chart[c].first + seg->chart[c].count; i++) {
@@ -86,6 +90,20 @@ static void place_corners(sl_atlas *atlas, bool quantise)
     }
 }
 
+/* From the packer's list to one placement a chart: a copy lies where its source lies. */
+static void spread_placements(const sl_segmentation *seg, const sl_placement *packed, sl_placement *placement)
+{
+    int32_t n = 0;
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        if (seg->chart[c].copy_of < 0) {
+            placement[c] = packed[n++];
+        }
+    }
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        placement[c] = placement[sl_chart_shown(seg, c)];
+    }
+}
+
 /* Places the charts on the page. */
 static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
 {
@@ -93,16 +111,19 @@ static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_
     const sl_segmentation *seg = atlas->segmentation;
     pack_input input = {0};
     sl_status status = SL_OK;
+    sl_placement *packed = sl_calloc(seg->nchart, sizeof *packed);
     atlas->placement = sl_calloc(seg->nchart, sizeof *atlas->placement);
     atlas->corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->corner_uv);
     atlas->input_corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->input_corner_uv);
-    if (atlas->placement == NULL || atlas->corner_uv == NULL || atlas->input_corner_uv == NULL) {
+    if (packed == NULL || atlas->placement == NULL || atlas->corner_uv == NULL || atlas->input_corner_uv == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
     SL_TRY(pack_input_init(atlas, &input));
-    SL_TRY(sl_pack(seg->nchart, input.chart, &def->pack, context, atlas->placement, &atlas->pack));
+    SL_TRY(sl_pack(input.count, input.chart, &def->pack, context, packed, &atlas->pack));
+    spread_placements(seg, packed, atlas->placement);
 cleanup:
+    sl_free(packed);
     pack_input_clear(&input);
     return status;
 }
@@ -141,6 +162,39 @@ static sl_status warn_of_bent_facets(sl_atlas *atlas, const sl_atlas_def *def)
     return SL_OK;
 }
 
+/* Symmetries that were asked for and not found, or found and not kept. */
+static sl_status warn_of_symmetry(sl_atlas *atlas, const sl_atlas_def *def)
+{
+    const sl_sharing_info *info = &atlas->segmentation->sharing;
+    const bool automatic = def->seams == SL_SEAMS_AUTOMATIC;
+    if (automatic && def->segment.symmetry == SL_SYMMETRY_USE_EXACT && info->axes == 0 && info->components == 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text, "no exact symmetry was found to share texture by");
+    }
+    if (info->planes > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text,
+                 "%d components are cut at the plane of a near symmetry (mean misfit %.3g of the diagonal); their "
+                 "facets do not correspond, so nothing is shared there",
+                 info->planes, info->misfit);
+    }
+    if (info->refused > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text, "%d charts could not copy their mirror image and are laid flat themselves",
+                 info->refused);
+    }
+    return SL_OK;
+}
+
 /* A chart that is not what was asked for is named. */
 static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
 {
@@ -174,7 +228,8 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
         }
         snprintf(w->text, sizeof w->text, "%d facets without area get one texel each", atlas->repair.degenerate_faces);
     }
-    return warn_of_bent_facets(atlas, def);
+    const sl_status status = warn_of_symmetry(atlas, def);
+    return status == SL_OK ? warn_of_bent_facets(atlas, def) : status;
 }
 
 /* Charts of the user's own seams must be disks: nothing else can be flattened. */
@@ -219,7 +274,8 @@ static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl
 
 static bool only_texels_meet(const sl_atlas_check *check)
 {
-    return !check->passed && check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0;
+    return !check->passed && check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
+           check->unlike == 0;
 }
 
 /* Writes the UVs and judges them; in the rare cases that need it, with all digits (triangles smaller than the quantum)

@@ -20,12 +20,15 @@ sl_atlas_def sl_atlas_default(void);
 
 /* What the finished atlas was found to be, judged on the UVs as written. */
 typedef struct sl_atlas_check {
-    int32_t flipped;            /* triangles of the wrong orientation, by exact predicate */
-    int32_t degenerate;         /* UV triangles of zero area whose 3D triangle has some */
-    int32_t uncertified_charts; /* charts without a proof that they do not overlap themselves */
-    int32_t resolution;         /* texels a side */
-    int64_t covered_texels, overlapping_texels;
-    bool passed; /* nothing flipped, degenerate, overlapping or uncertified */
+    int32_t flipped;                            /* triangles of the wrong orientation, by exact predicate */
+    int32_t degenerate;                         /* UV triangles of zero area whose 3D triangle has some */
+    int32_t uncertified_charts;                 /* charts without a proof that they do not overlap themselves */
+    int32_t resolution;                         /* texels a side */
+    int64_t covered_texels, overlapping_texels; /* of charts that are no copies */
+    int64_t shared_texels;                      /* hit by copies, too: intended, and no fault */
+    int32_t unlike;                             /* corners of copies whose UVs are not, bit for bit, those they copy */
+    bool passed; /* nothing flipped, degenerate, overlapping, uncertified or unlike; a mirrored copy is judged
+                    by its own orientation */
 } sl_atlas_check;
 
 /* A sentence for the user about one chart (or none: -1). */
@@ -41,7 +44,7 @@ typedef struct sl_atlas {
     sl_segmentation *segmentation;
     double *corner_uv;       /* nh x 2, by mesh halfedge, quantised as files hold them, in [0, 1] */
     double *input_corner_uv; /* the same by input corner */
-    sl_placement *placement; /* one a chart */
+    sl_placement *placement; /* one a chart; a copy has its source's */
     sl_pack_info pack;
     sl_atlas_check check;
     int32_t nwarning;
@@ -58,6 +61,12 @@ SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def
                                  sl_atlas **out, sl_diag *diag);
 
 void sl_atlas_free(sl_atlas *atlas); /* NULL is a no-op */
+
+/* Number of the chart that chart c shows: itself, or the one it copies. */
+static inline int32_t sl_chart_shown(const sl_segmentation *segmentation, int32_t c)
+{
+    return segmentation->chart[c].copy_of >= 0 ? segmentation->chart[c].copy_of : c;
+}
 
 /* Seam edges as mesh halfedges, one per edge cut or opened along differing UVs of two charts; *count of them. Owned by
  * the caller (sl_free). SL_OUT_OF_MEMORY. */

@@ -101,7 +101,22 @@ static void clear_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     (void)chunk;
     const clearance_job *job = user;
     for (int64_t c = begin; c < end; c++) {
-        job->status[c] = clear_chart(job->atlas, (int32_t)c);
+        if (job->atlas->segmentation->chart[c].copy_of < 0) {
+            job->status[c] = clear_chart(job->atlas, (int32_t)c);
+        }
+    }
+}
+
+/* Copies go where their sources went. */
+static void follow_sources(sl_atlas *atlas)
+{
+    const int32_t *source = atlas->segmentation->source;
+    for (int32_t h = 0; source != NULL && h < atlas->mesh->nh; h++) {
+        if (source[h] >= 0) {
+            const double *from = atlas->corner_uv + 2 * (int64_t)source[h];
+            memcpy(atlas->corner_uv + 2 * (int64_t)h, from, 2 * sizeof *from);
+            memcpy(atlas->input_corner_uv + 2 * (int64_t)sl_input_corner(atlas->mesh, h), from, 2 * sizeof *from);
+        }
     }
 }
 
@@ -115,6 +130,7 @@ sl_status sl_atlas_clear_borders(sl_atlas *atlas, const sl_context *context)
     for (int32_t c = 0; c < n; c++) {
         SL_TRY(job.status[c]);
     }
+    follow_sources(atlas);
 cleanup:
     sl_free(job.status);
     return status;

@@ -18,7 +18,8 @@ typedef struct face_edge {
 /* The atlas taken apart: triangles grouped by chart. */
 typedef struct atlas_view {
     const sl_polygons *polygons;
-    sl_mesh *mesh; /* for the repair's reorientation and the normalisation */
+    const sl_sharing_table *table; /* nullable */
+    sl_mesh *mesh;                 /* for the repair's reorientation and the normalisation */
     sl_triangulation *triangulation;
     int32_t nt;
     double *xyz;         /* 9 nt, normalised */
@@ -66,8 +67,11 @@ static int32_t find_root(int32_t *parent, int32_t i)
     return i;
 }
 
-static void join_faces(int32_t *parent, int32_t f, int32_t g)
+static void join_faces(const atlas_view *view, int32_t *parent, int32_t f, int32_t g)
 {
+    if (view->table != NULL && view->table->face_chart[f] != view->table->face_chart[g]) {
+        return;
+    }
     const int32_t a = find_root(parent, f), b = find_root(parent, g);
     parent[a > b ? a : b] = a < b ? a : b;
 }
@@ -127,9 +131,10 @@ static sl_status find_charts(atlas_view *view, const double *corner_uv)
         bool seam = false;
         for (end = begin + 1; end < count && edge[end].a == edge[begin].a && edge[end].b == edge[begin].b; end++) {
             if (edge[end].uv_a == edge[end - 1].uv_a && edge[end].uv_b == edge[end - 1].uv_b) {
-                join_faces(parent, edge[end - 1].face, edge[end].face);
+                join_faces(view, parent, edge[end - 1].face, edge[end].face);
             }
-            seam |= edge[end].uv_a != edge[begin].uv_a || edge[end].uv_b != edge[begin].uv_b;
+            seam |= edge[end].uv_a != edge[begin].uv_a || edge[end].uv_b != edge[begin].uv_b ||
+                    find_root(parent, edge[end].face) != find_root(parent, edge[begin].face);
         }
         view->seam_length += seam ? edge[begin].length : 0.0;
     }
@@ -247,55 +252,125 @@ static void texel_box(const atlas_view *view, int32_t chart, int32_t resolution,
     }
 }
 
-/* Counts texels chart by chart: one buffer for the chart at hand, emptied again over its box, one for what was seen. */
+/* What is known of a texel. */
+enum { SEEN = 1, INSIDE = 2, ACROSS = 4, SHARED = 8 };
+
+/* The texels as charts are laid on them one after another. */
+typedef struct texel_map {
+    int32_t side;
+    uint8_t *seen;    /* side^2 */
+    int32_t *owner;   /* side^2: chart of the table that came first; NULL without a table */
+    sl_coverage *own; /* the chart at hand, emptied again over its box */
+} texel_map;
+
+static void texel_map_clear(texel_map *map)
+{
+    sl_free(map->seen);
+    sl_free(map->owner);
+    sl_coverage_free(map->own);
+}
+
+static sl_status texel_map_create(texel_map *map, bool owners)
+{
+    const int64_t texels = (int64_t)map->side * map->side;
+    map->seen = sl_calloc(texels, sizeof *map->seen);
+    map->owner = owners ? sl_alloc(texels, sizeof *map->owner) : NULL;
+    if (map->seen == NULL || (owners && map->owner == NULL)) {
+        return SL_OUT_OF_MEMORY;
+    }
+    return sl_coverage_create(map->side, map->side, &map->own);
+}
+
+/* The chart of the table that a chart found belongs to, and what that copies; both -1 without a table. */
+static void table_entry(const atlas_view *view, const int32_t *first_face, int32_t chart, int32_t *label,
+                        int32_t *source)
+{
+    *label = view->table != NULL ? view->table->face_chart[first_face[chart]] : -1;
+    *source = *label >= 0 ? view->table->copy_of[*label] : -1;
+}
+
+/* Adds the chart just drawn into map->own. label, source: see table_entry. */
+static void add_chart(const atlas_view *view, int32_t chart, int32_t label, int32_t source, texel_map *map)
+{
+    int32_t lo[2], hi[2];
+    texel_box(view, chart, map->side, lo, hi);
+    for (int32_t y = lo[1]; y <= hi[1]; y++) {
+        for (int32_t x = lo[0]; x <= hi[0]; x++) {
+            const int64_t i = (int64_t)y * map->side + x;
+            if (map->own->count[i] == 0) {
+                continue;
+            }
+            const bool met = map->seen[i] != 0, meant = met && source >= 0 && map->owner[i] == source;
+            if (map->owner != NULL && !met) {
+                map->owner[i] = label;
+            }
+            map->seen[i] |= (uint8_t)((map->own->count[i] > 1 ? INSIDE : 0) | (met && !meant ? ACROSS : 0) |
+                                      (meant ? SHARED : 0) | SEEN);
+            map->own->count[i] = 0;
+        }
+    }
+}
+
+static void sum_texels(const texel_map *map, sl_atlas_measure *out)
+{
+    int64_t covered = 0, inside = 0, across = 0, shared = 0;
+    const int64_t n = (int64_t)map->side * map->side;
+    for (int64_t i = 0; i < n; i++) {
+        covered += (map->seen[i] & SEEN) != 0;
+        inside += (map->seen[i] & INSIDE) != 0;
+        across += (map->seen[i] & ACROSS) != 0;
+        shared += (map->seen[i] & SHARED) != 0;
+    }
+    out->fill = (double)covered / (double)n;
+    out->overlap_inside = covered > 0 ? (double)inside / (double)covered : 0.0;
+    out->overlap_across = covered > 0 ? (double)across / (double)covered : 0.0;
+    out->shared = covered > 0 ? (double)shared / (double)covered : 0.0;
+}
+
+/* The first facet of each chart; owned by the caller. */
+static int32_t *first_faces(const atlas_view *view)
+{
+    int32_t *first = sl_alloc(view->charts, sizeof *first);
+    for (int32_t f = view->polygons->nf - 1; first != NULL && f >= 0; f--) {
+        first[view->face_chart[f]] = f;
+    }
+    return first;
+}
+
+/* Counts texels chart by chart, copies after the charts they copy. */
 static sl_status count_overlaps(const atlas_view *view, const sl_context *context, sl_atlas_measure *out)
 {
-    const int32_t n = out->resolution;
-    sl_coverage *own = NULL;
-    int32_t largest = 0;
-    int64_t covered = 0, inside = 0, across = 0;
-    enum { SEEN = 1, INSIDE = 2, ACROSS = 4 };
-    uint8_t *seen = sl_calloc((int64_t)n * n, sizeof *seen);
-    int32_t *tri = NULL;
+    texel_map map = {.side = out->resolution};
+    int32_t largest = 0, *tri = NULL, *first_face = first_faces(view);
     sl_status status = SL_OUT_OF_MEMORY;
     for (int32_t c = 0; c < view->charts; c++) {
         const int32_t count = view->chart_first[c + 1] - view->chart_first[c];
         largest = count > largest ? count : largest;
     }
     tri = sl_alloc(3 * (int64_t)largest, sizeof *tri);
-    if (seen == NULL || tri == NULL) {
+    if (first_face == NULL || tri == NULL) {
         goto cleanup;
     }
     for (int32_t i = 0; i < 3 * largest; i++) {
         tri[i] = i;
     }
-    SL_TRY(sl_coverage_create(n, n, &own));
-    for (int32_t c = 0; c < view->charts; c++) {
-        int32_t lo[2], hi[2];
-        texel_box(view, c, n, lo, hi);
-        SL_TRY(sl_coverage_add(own, view->uv + 6 * (int64_t)view->chart_first[c],
-                               view->chart_first[c + 1] - view->chart_first[c], tri, context));
-        for (int32_t y = lo[1]; y <= hi[1]; y++) {
-            for (int32_t x = lo[0]; x <= hi[0]; x++) {
-                const int64_t i = (int64_t)y * n + x;
-                if (own->count[i] > 0) {
-                    seen[i] |= (uint8_t)((own->count[i] > 1 ? INSIDE : 0) | (seen[i] != 0 ? ACROSS : 0) | SEEN);
-                    own->count[i] = 0;
-                }
+    SL_TRY(texel_map_create(&map, view->table != NULL));
+    for (int copies = 0; copies < 2; copies++) {
+        for (int32_t c = 0; c < view->charts; c++) {
+            int32_t label, source;
+            table_entry(view, first_face, c, &label, &source);
+            if ((source >= 0) == (copies == 1)) {
+                SL_TRY(sl_coverage_add(map.own, view->uv + 6 * (int64_t)view->chart_first[c],
+                                       view->chart_first[c + 1] - view->chart_first[c], tri, context));
+                add_chart(view, c, label, source, &map);
+                out->copies += copies;
             }
         }
     }
-    for (int64_t i = 0; i < (int64_t)n * n; i++) {
-        covered += (seen[i] & SEEN) != 0;
-        inside += (seen[i] & INSIDE) != 0;
-        across += (seen[i] & ACROSS) != 0;
-    }
-    out->fill = (double)covered / ((double)n * n);
-    out->overlap_inside = covered > 0 ? (double)inside / (double)covered : 0.0;
-    out->overlap_across = covered > 0 ? (double)across / (double)covered : 0.0;
+    sum_texels(&map, out);
 cleanup:
-    sl_coverage_free(own);
-    sl_free(seen);
+    texel_map_clear(&map);
+    sl_free(first_face);
     sl_free(tri);
     return status;
 }
@@ -364,11 +439,25 @@ static double surface_area(const atlas_view *view)
     return area;
 }
 
+void sl_sharing_table_clear(sl_sharing_table *table)
+{
+    sl_free(table->face_chart);
+    sl_free(table->copy_of);
+    *table = (sl_sharing_table){0};
+}
+
 sl_status sl_measure_atlas(const sl_polygons *polygons, const double *corner_uv, int32_t resolution,
                            const sl_context *context, sl_atlas_measure *out, sl_diag *diag)
 {
+    return sl_measure_shared(polygons, corner_uv, NULL, resolution, context, out, diag);
+}
+
+sl_status sl_measure_shared(const sl_polygons *polygons, const double *corner_uv, const sl_sharing_table *table,
+                            int32_t resolution, const sl_context *context, sl_atlas_measure *out, sl_diag *diag)
+{
     SL_ASSERT(resolution > 0);
-    atlas_view view = {.polygons = polygons};
+    SL_ASSERT(table == NULL || table->nf == polygons->nf);
+    atlas_view view = {.polygons = polygons, .table = table};
     sl_atlas_measure m = {.resolution = resolution};
     sl_status status = SL_OK;
     SL_TRY(check_uvs(polygons, corner_uv, diag));

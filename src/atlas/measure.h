@@ -18,11 +18,29 @@ typedef struct sl_atlas_measure {
     sl_distortion global;     /* after one scale for the whole atlas: L2, Linf, angle, area; flipped, degenerate */
     double overlap_inside;    /* share of covered texels hit twice within a chart */
     double overlap_across;    /* ... across charts */
+    int32_t copies;           /* charts that copy another, by the sharing table; 0 without one */
+    double shared;            /* share of covered texels that copies and their sources have in common: intended, and not
+                                 counted as overlap */
     double fill;              /* covered texels / resolution^2 of the UVs' bounding square */
     double chart_l2_mean, chart_l2_worst; /* L2 with each chart's best scale; mean over charts, worst */
     int32_t worst_chart;                  /* numbered by first facet */
     int32_t resolution;
 } sl_atlas_measure;
+
+/* Which charts show the same texels on purpose: what a sidecar says (sl_sidecar_read). */
+typedef struct sl_sharing_table {
+    int32_t nf, nchart;
+    int32_t *face_chart; /* nf: below nchart */
+    int32_t *copy_of;    /* nchart: the chart that a copy takes its UVs from, itself no copy; -1 = its own */
+} sl_sharing_table;
+
+void sl_sharing_table_clear(sl_sharing_table *table);
+
+/* sl_measure_atlas with a table (nullable, table->nf = polygons->nf): facets of different charts of the table are never
+ * joined, and where a copy covers its source that is shared and no overlap. Everything else is as without. */
+SL_NODISCARD sl_status sl_measure_shared(const sl_polygons *polygons, const double *corner_uv,
+                                         const sl_sharing_table *table, int32_t resolution, const sl_context *context,
+                                         sl_atlas_measure *out, sl_diag *diag);
 
 /* corner_uv: 2 per corner. Orientation is judged per chart (the sign of most of its area is right), after the repair's
  * reorientation of facets. SL_BAD_INPUT (a corner without a finite UV: diag names the facet), SL_OUT_OF_MEMORY. */

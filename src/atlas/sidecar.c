@@ -74,11 +74,58 @@ static const char *source_name(sl_seam_source source)
     return names[source];
 }
 
+static const char *symmetry_use_name(sl_symmetry_use use)
+{
+    static const char *const names[] = {
+        [SL_SYMMETRY_USE_AUTO] = "auto",
+        [SL_SYMMETRY_USE_OFF] = "off",
+        [SL_SYMMETRY_USE_EXACT] = "exact",
+        [SL_SYMMETRY_USE_NEAR] = "near",
+    };
+    return names[use];
+}
+
+static const char *method_name(sl_cut_method method)
+{
+    return method == SL_METHOD_SPECTRAL ? "spectral" : method == SL_METHOD_PCA ? "pca" : "vsa";
+}
+
+static const char *split_symmetry_name(sl_split_symmetry symmetry)
+{
+    static const char *const names[] = {
+        [SL_SPLIT_PLAIN] = "none",
+        [SL_SPLIT_MIRROR] = "axis",
+        [SL_SPLIT_HALVES] = "halves",
+        [SL_SPLIT_PLANE] = "plane",
+    };
+    return names[symmetry];
+}
+
+/* What symmetry saved: copies take no room on the page. */
+static json_t *symmetry_json(const sl_atlas *atlas)
+{
+    const sl_sharing_info *s = &atlas->segmentation->sharing;
+    json_t *j = json_object();
+    json_object_set_new(j, "axes", json_integer(s->axes));
+    json_object_set_new(j, "component_copies", json_integer(s->components));
+    json_object_set_new(j, "copied_charts", json_integer(s->copies));
+    json_object_set_new(j, "refused_charts", json_integer(s->refused));
+    json_object_set_new(j, "texture_memory_saved", number(s->area));
+    json_object_set_new(j, "truncated", json_boolean(s->truncated));
+    json_object_set_new(j, "near_planes", json_integer(s->planes));
+    json_object_set_new(j, "near_plane_misfit", number(s->misfit));
+    return j;
+}
+
 static json_t *options_json(const sl_atlas_def *def)
 {
     const sl_segment_def *s = &def->segment;
     json_t *j = json_object();
     json_object_set_new(j, "seams", json_string(source_name(def->seams)));
+    json_object_set_new(j, "method", json_string(method_name(s->method)));
+    json_object_set_new(j, "symmetry", json_string(symmetry_use_name(s->symmetry)));
+    json_object_set_new(j, "test_halves", json_boolean(s->test_halves));
+    json_object_set_new(j, "unshare", json_boolean(s->unshare));
     json_object_set_new(j, "rule", json_string(rule_name(s->rule)));
     json_object_set_new(j, "vectors", json_integer(s->vectors));
     json_object_set_new(j, "pair", json_string(pairing_name(s->pairing)));
@@ -117,7 +164,12 @@ static json_t *chart_json(const sl_atlas *atlas, int32_t c)
     json_object_set_new(j, "genus", json_integer(chart->topology.genus));
     json_object_set_new(j, "loops", json_integer(chart->topology.loops));
     json_object_set_new(j, "capped", json_boolean(chart->capped));
-    json_object_set_new(j, "shares_with", json_null());
+    json_object_set_new(j, "copy_of", chart->copy_of >= 0 ? json_integer(chart->copy_of) : json_null());
+    json_object_set_new(j, "mirrored", json_boolean(chart->mirrored));
+    json_object_set_new(j, "kind",
+                        chart->copy_of < 0                 ? json_null()
+                        : chart->kind == SL_SYMMETRY_EXACT ? json_string("exact")
+                                                           : json_string("near"));
     json_object_set_new(
         j, "placement",
         json_pack("{s:o, s:[o,o]}", "angle", number(p->angle), "offset", number(p->offset[0]), number(p->offset[1])));
@@ -161,6 +213,8 @@ static json_t *splits_json(const sl_segmentation *seg)
         json_object_set_new(j, "parts", json_integer(s->parts));
         json_object_set_new(j, "length", number(s->length));
         json_object_set_new(j, "smoothed", json_boolean(s->smoothed));
+        json_object_set_new(j, "symmetry", json_string(split_symmetry_name(s->symmetry)));
+        json_object_set_new(j, "straddling_facets", json_integer(s->fixed));
         json_object_set_new(j, "because", json_string(sl_flatten_verdict_name(s->because)));
         json_array_append_new(list, j);
     }
@@ -178,6 +232,8 @@ static json_t *certificate_json(const sl_atlas *atlas)
     json_object_set_new(j, "resolution", json_integer(c->resolution));
     json_object_set_new(j, "covered_texels", json_integer(c->covered_texels));
     json_object_set_new(j, "overlapping_texels", json_integer(c->overlapping_texels));
+    json_object_set_new(j, "shared_texels", json_integer(c->shared_texels));
+    json_object_set_new(j, "unlike_corners", json_integer(c->unlike));
     return j;
 }
 
@@ -200,7 +256,8 @@ static json_t *fallbacks_json(const sl_segmentation *seg)
         minimised += seg->chart[c].flat.stretch_minimised;
     }
     for (int32_t k = 0; k < seg->nsplit; k++) {
-        fiedler += seg->split[k].vector < 0;
+        const sl_split_symmetry symmetry = seg->split[k].symmetry;
+        fiedler += seg->split[k].vector < 0 && symmetry != SL_SPLIT_MIRROR && symmetry != SL_SPLIT_PLANE;
     }
     return json_pack("{s:i, s:i, s:i, s:i}", "tutte_charts", tutte, "lscm_charts", lscm, "stretch_minimised_charts",
                      minimised, "fiedler_splits", fiedler);
@@ -223,6 +280,7 @@ static json_t *atlas_json(const sl_atlas *atlas, const sl_atlas_def *def)
     json_object_set_new(j, "merges", json_integer(seg->merges));
     json_object_set_new(j, "warnings", warnings_json(atlas));
     json_object_set_new(j, "fallbacks", fallbacks_json(seg));
+    json_object_set_new(j, "symmetry", symmetry_json(atlas));
     json_object_set_new(j, "charts", charts_json(atlas));
     json_object_set_new(j, "splits", splits_json(seg));
     json_object_set_new(j, "seams", seams_json(atlas->mesh));

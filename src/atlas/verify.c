@@ -4,6 +4,8 @@
 #include "overlap/certificate.h"
 #include "overlap/coverage.h"
 
+#include <string.h>
+
 /* One chart's certificate, or why there is none. */
 typedef struct chart_verdict {
     sl_status status;
@@ -14,6 +16,16 @@ typedef struct verify_job {
     const sl_atlas *atlas;
     chart_verdict *verdict;
 } verify_job;
+
+/* A mirrored copy is judged as its mirror image. */
+static void turn_triangles(sl_patch *patch, int32_t *tri)
+{
+    for (int32_t t = 0; t < patch->nt; t++) {
+        tri[3 * t] = patch->tri[3 * t];
+        tri[3 * t + 1] = patch->tri[3 * t + 2];
+        tri[3 * t + 2] = patch->tri[3 * t + 1];
+    }
+}
 
 /* Border halfedges of the patch as vertex pairs. *pair is owned by the caller. */
 static sl_status border_pairs(const sl_patch *patch, int32_t **pair, int32_t *count)
@@ -43,7 +55,7 @@ static sl_status certify_chart(const sl_atlas *atlas, int32_t c, sl_certificate 
     const sl_chart *chart = &seg->chart[c];
     sl_patch *patch = NULL;
     double *uv = NULL;
-    int32_t *border = NULL, border_count = 0;
+    int32_t *border = NULL, border_count = 0, *turned = NULL;
     sl_status status = SL_OK;
     if (chart->count == 1 && (atlas->mesh->face_flags[seg->face[chart->first]] & SL_FACE_DEGENERATE) != 0) {
         *out = (sl_certificate){.embedded = true, .first_edge = {-1, -1}}; /* no area, nothing to overlap */
@@ -51,7 +63,8 @@ static sl_status certify_chart(const sl_atlas *atlas, int32_t c, sl_certificate 
     }
     SL_TRY(sl_patch_extract(atlas->mesh, atlas->triangulation, seg->face + chart->first, chart->count, &patch));
     uv = sl_alloc(patch->nv, 2 * sizeof *uv);
-    if (uv == NULL) {
+    turned = sl_alloc(3 * (int64_t)patch->nt, sizeof *turned);
+    if (uv == NULL || turned == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -60,11 +73,13 @@ static sl_status certify_chart(const sl_atlas *atlas, int32_t c, sl_certificate 
         uv[2 * (int64_t)patch->tri[k] + 1] = atlas->corner_uv[2 * (int64_t)patch->corner[k] + 1];
     }
     SL_TRY(border_pairs(patch, &border, &border_count));
-    SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, border_count, border, out));
+    turn_triangles(patch, turned);
+    SL_TRY(sl_certify_embedding(uv, patch->nt, chart->mirrored ? turned : patch->tri, border_count, border, out));
     out->embedded = out->embedded && sl_patch_is_disk(patch);
 cleanup:
     sl_patch_free(patch);
     sl_free(uv);
+    sl_free(turned);
     sl_free(border);
     return status;
 }
@@ -78,21 +93,66 @@ static void certify_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     }
 }
 
-/* Texels of the whole page hit more than once. */
+/* The triangles of the charts that are copies (or not), in the triangulation's order. Returns how many. */
+static int32_t select_triangles(const sl_atlas *atlas, bool copies, int32_t *tri)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    const sl_triangulation *t = atlas->triangulation;
+    int32_t n = 0;
+    for (int32_t f = 0; f < atlas->mesh->nf; f++) {
+        if ((seg->chart[seg->face_chart[f]].copy_of >= 0) == copies) {
+            const int32_t count = t->first[f + 1] - t->first[f];
+            memcpy(tri + 3 * (int64_t)n, t->corner + 3 * (int64_t)t->first[f], 3 * (size_t)count * sizeof *tri);
+            n += count;
+        }
+    }
+    return n;
+}
+
+/* Texels of the whole page hit more than once by charts that are no copies, and those that copies hit. */
 static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
 {
     sl_coverage *coverage = NULL;
-    sl_status status = sl_coverage_create(atlas->check.resolution, atlas->check.resolution, &coverage);
-    if (status == SL_OK) {
-        status = sl_coverage_add(coverage, atlas->corner_uv, atlas->triangulation->nt, atlas->triangulation->corner,
-                                 context);
+    sl_status status = SL_OK;
+    int32_t *tri = sl_alloc(3 * (int64_t)atlas->triangulation->nt, sizeof *tri);
+    for (int copies = 0; copies < 2; copies++) {
+        SL_TRY(tri != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+        const int32_t nt = select_triangles(atlas, copies == 1, tri);
+        if (copies == 1 && nt == 0) {
+            break;
+        }
+        sl_coverage_free(coverage);
+        coverage = NULL;
+        SL_TRY(sl_coverage_create(atlas->check.resolution, atlas->check.resolution, &coverage));
+        SL_TRY(sl_coverage_add(coverage, atlas->corner_uv, nt, tri, context));
+        if (copies == 0) {
+            atlas->check.covered_texels = sl_coverage_covered(coverage);
+            atlas->check.overlapping_texels = sl_coverage_overlapping(coverage);
+        } else {
+            atlas->check.shared_texels = sl_coverage_covered(coverage);
+        }
     }
-    if (status == SL_OK) {
-        atlas->check.covered_texels = sl_coverage_covered(coverage);
-        atlas->check.overlapping_texels = sl_coverage_overlapping(coverage);
-    }
+cleanup:
     sl_coverage_free(coverage);
+    sl_free(tri);
     return status;
+}
+
+/* Corners of copies that are not where the corners they copy are. */
+static int32_t count_unlike(const sl_atlas *atlas)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    int32_t unlike = 0;
+    for (int32_t h = 0; h < atlas->mesh->nh; h++) {
+        const int32_t c = seg->face_chart[atlas->mesh->face[h]], shown = sl_chart_shown(seg, c);
+        if (shown != c) {
+            const int32_t from = seg->source != NULL ? seg->source[h] : -1;
+            const double *uv = atlas->corner_uv;
+            unlike += from < 0 || seg->face_chart[atlas->mesh->face[from]] != shown ||
+                      memcmp(uv + 2 * (int64_t)h, uv + 2 * (int64_t)from, 2 * sizeof *uv) != 0;
+        }
+    }
+    return unlike;
 }
 
 sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
@@ -111,8 +171,9 @@ sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_con
         check->uncertified_charts += !job.verdict[c].certificate.embedded;
     }
     SL_TRY(count_texels(atlas, context));
+    check->unlike = count_unlike(atlas);
     check->passed = check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
-                    check->overlapping_texels == 0;
+                    check->overlapping_texels == 0 && check->unlike == 0;
 cleanup:
     sl_free(job.verdict);
     return status;

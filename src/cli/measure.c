@@ -1,5 +1,5 @@
 /* seamlab measure: the columns by which atlases are compared. */
-#include "atlas/measure.h"
+#include "atlas/sidecar.h"
 #include "cli/cli.h"
 
 #include <jansson.h>
@@ -9,7 +9,8 @@
 static const cli_verb verb = {
     .name = "measure",
     .usage = "seamlab measure FILE... [--resolution N] [--json]",
-    .summary = "Measures the UVs of any mesh: charts, seams, distortion, overlap, fill.",
+    .summary = "Measures the UVs of any mesh: charts, seams, distortion, overlap, fill. Where a sidecar stands\n"
+               "beside a file, charts that it says are shared do not count as overlap.",
     .examples = "  seamlab measure model-uv.obj\n  seamlab measure ours.obj theirs.obj --json\n",
     .min_files = 1,
     .max_files = CLI_MAX_FILES,
@@ -27,6 +28,10 @@ static void print_row(const char *name, const sl_atlas_measure *m)
     printf("  area       mean %.4f   max %.4g\n", d->area_mean, d->area_max);
     printf("  flipped %d   degenerate %d   overlap inside %.5f, across %.5f\n", d->flipped, d->degenerate,
            m->overlap_inside, m->overlap_across);
+    if (m->copies > 0) {
+        printf("  shared     %d charts are copies; they lie on %.5f of the texels covered, by intent\n", m->copies,
+               m->shared);
+    }
     printf("  fill       %.4f of the bounding square at %d^2\n", m->fill, m->resolution);
 }
 
@@ -47,6 +52,8 @@ static json_t *row_json(const char *name, const sl_atlas_measure *m)
     json_object_set_new(j, "deg", json_integer(d->degenerate));
     json_object_set_new(j, "ovIn", number(m->overlap_inside));
     json_object_set_new(j, "ovX", number(m->overlap_across));
+    json_object_set_new(j, "copies", json_integer(m->copies));
+    json_object_set_new(j, "shared", number(m->shared));
     json_object_set_new(j, "angMean", number(d->angle_mean));
     json_object_set_new(j, "ang95", number(d->angle_p95));
     json_object_set_new(j, "angMax", number(d->angle_max));
@@ -61,11 +68,25 @@ static json_t *row_json(const char *name, const sl_atlas_measure *m)
     return j;
 }
 
+/* What the sidecar beside the file says of shared charts; NULL without one, or where it is of another mesh. */
+static const sl_sharing_table *read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
+{
+    char sidecar[4096];
+    sl_diag diag = sl_diag_none();
+    sl_sidecar_path(path, sidecar, sizeof sidecar);
+    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
+    if (status != SL_OK && status != SL_IO) {
+        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
+    }
+    return status == SL_OK ? table : NULL;
+}
+
 static int measure_file(cli_run *run, const char *path, int32_t resolution)
 {
     sl_diag diag = sl_diag_none();
     sl_meshfile *file = NULL;
     sl_polygons polygons;
+    sl_sharing_table table = {0};
     sl_atlas_measure m;
     int code = cli_read_mesh(run, path, &file);
     if (code != CLI_DONE) {
@@ -78,8 +99,11 @@ static int measure_file(cli_run *run, const char *path, int32_t resolution)
     } else {
         sl_meshfile_polygons(file, &polygons);
         snprintf(diag.file, sizeof diag.file, "%s", path);
-        code = cli_fail(run, sl_measure_atlas(&polygons, file->corner_uv, resolution, &run->context, &m, &diag), &diag);
+        const sl_sharing_table *shared = read_sharing(run, path, polygons.nf, &table);
+        code = cli_fail(
+            run, sl_measure_shared(&polygons, file->corner_uv, shared, resolution, &run->context, &m, &diag), &diag);
     }
+    sl_sharing_table_clear(&table);
     sl_meshfile_free(file);
     if (code == CLI_DONE && run->json) {
         json_t *j = row_json(path, &m);

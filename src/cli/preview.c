@@ -1,5 +1,6 @@
 #include "cli/preview.h"
 
+#include "base/memory.h"
 #include "image/png.h"
 #include "render/render.h"
 
@@ -10,17 +11,35 @@ static const double preview_checks = 48.0;
 
 static const char *const picture_names[CLI_PICTURES] = {"both.png", "model.png", "atlas.png"};
 
+/* The chart a facet shows: copies have their sources' colours. Owned by the caller; NULL: out of memory. */
+static int32_t *shown_charts(const sl_atlas *atlas)
+{
+    const sl_segmentation *seg = atlas->segmentation;
+    int32_t *shown = sl_alloc(atlas->mesh->nf, sizeof *shown);
+    for (int32_t f = 0; shown != NULL && f < atlas->mesh->nf; f++) {
+        shown[f] = sl_chart_shown(seg, seg->face_chart[f]);
+    }
+    return shown;
+}
+
 static sl_status draw(const sl_atlas *atlas, const sl_context *context, cli_pictures *out, sl_diag *diag)
 {
     sl_scene scene = sl_scene_default();
     sl_picture picture = sl_picture_default();
     sl_status status = SL_OK;
+    const sl_sharing_info *sharing = &atlas->segmentation->sharing;
+    char title[128];
+    int32_t *shown = shown_charts(atlas);
+    snprintf(title, sizeof title, "atlas: %d charts lie on others, %.0f %% of the texture saved", sharing->copies,
+             100.0 * sharing->area);
+    SL_TRY(shown != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     scene.mesh = atlas->mesh;
     scene.triangulation = atlas->triangulation;
     scene.corner_uv = atlas->corner_uv;
-    scene.chart = atlas->segmentation->face_chart;
+    scene.chart = shown;
     scene.checks = preview_checks;
     picture.back_view = true;
+    picture.uv_title = sharing->copies > 0 ? title : NULL;
     picture.width = 2160;
     picture.height = 760;
     SL_TRY(sl_render_pair(&scene, NULL, &picture, context, &out->image[0], diag));
@@ -28,8 +47,10 @@ static sl_status draw(const sl_atlas *atlas, const sl_context *context, cli_pict
     SL_TRY(sl_render_3d(&scene, NULL, &picture, context, &out->image[1], diag));
     picture.width = 1280;
     picture.height = 1280;
+    picture.uv_title = sharing->copies > 0 ? title : NULL;
     SL_TRY(sl_render_uv(&scene, &picture, context, &out->image[2], diag));
 cleanup:
+    sl_free(shown);
     return status;
 }
 

@@ -7,6 +7,7 @@ static void load_def(cli_segment_options *o, sl_segment_def def)
 {
     o->def = def;
     o->method = (int32_t)def.method;
+    o->symmetry = (int32_t)def.symmetry;
     o->rule = (int32_t)def.rule;
     o->pairing = (int32_t)def.pairing;
     o->energy = (int32_t)def.flatten.abf.energy;
@@ -36,6 +37,11 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
          "proxies of the first vsa cut, 0 = by error (0)"},
         {"vsa-error", 0, CLI_REAL, &o->def.vsa_error, 0.0, 4.0, NULL, "E",
          "mean |n - N|^2 at which proxies are enough (0.05)"},
+        {"symmetry", 0, CLI_CHOICE, &o->symmetry, 0, 0, "auto|off|exact|near", NULL,
+         "mirror images and copies share texture: where exact, never, or warn if there are none, or near ones too"},
+        {"test-halves", 0, CLI_ON_OFF, &o->def.test_halves, 0, 0, NULL, NULL,
+         "the paper's way: no search for axes, but after each cut compare its halves (off)"},
+        {"unshare", 0, CLI_FLAG, &o->def.unshare, 0, 0, NULL, NULL, "lay mirror images and copies out, too"},
         {"rule", 0, CLI_CHOICE, &o->rule, 0, 0, "longest|length-lambda|lookahead", NULL, "which passing cut is taken"},
         {"vectors", 0, CLI_INT, &o->def.vectors, 2, 1000, NULL, "N", "eigenvectors a cut (30)"},
         {"pair", 0, CLI_CHOICE, &o->pairing, 0, 0, "auto|on|off", NULL, "triangles back into quads for the graph"},
@@ -60,6 +66,7 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
 void cli_segment_apply(cli_segment_options *o)
 {
     o->def.method = (sl_cut_method)o->method;
+    o->def.symmetry = (sl_symmetry_use)o->symmetry;
     o->def.rule = (sl_cut_rule)o->rule;
     o->def.pairing = (sl_pairing)o->pairing;
     o->def.flatten.abf.energy = (sl_abf_energy)o->energy;

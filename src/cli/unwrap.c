@@ -19,7 +19,8 @@ static const cli_verb verb = {
     .examples = "  seamlab unwrap model.obj -o model-uv.obj\n"
                 "  seamlab unwrap model.ply -o model-uv.ply --preview pictures --max-stretch 1.2\n"
                 "  seamlab unwrap model.obj -o paper.obj --preset paper\n"
-                "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n",
+                "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n"
+                "  seamlab unwrap model.obj -o own.obj --symmetry off\n",
     .min_files = 1,
     .max_files = 1,
 };
@@ -141,6 +142,9 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
                       "charts", seg->nchart, "seamDiag", seam, "worstL2", worst_stretch(seg), "fill", atlas->pack.fill,
                       "certified", atlas->check.passed, "flipped", atlas->check.flipped, "overlapping_texels",
                       (json_int_t)atlas->check.overlapping_texels, "warnings", atlas->nwarning, "splits", seg->nsplit);
+        json_object_set_new(j, "copies", json_integer(seg->sharing.copies));
+        json_object_set_new(j, "axes", json_integer(seg->sharing.axes));
+        json_object_set_new(j, "textureSaved", json_real(seg->sharing.area));
         json_dumpf(j, strcmp(o->output, "-") == 0 ? stderr : stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
         fputc('\n', strcmp(o->output, "-") == 0 ? stderr : stdout);
         json_decref(j);
@@ -148,6 +152,10 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
     }
     cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, no flip, no overlap at %d^2",
              seg->nchart, seam, worst_stretch(seg), atlas->pack.fill, atlas->check.resolution);
+    if (seg->sharing.copies > 0) {
+        cli_note(&o->run, "%d of them are mirror images or copies that share their texture: %.0f %% of it is saved",
+                 seg->sharing.copies, 100.0 * seg->sharing.area);
+    }
 }
 
 static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *atlas)

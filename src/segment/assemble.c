@@ -14,7 +14,14 @@ static int by_first_facet(const void *a, const void *b)
 
 static void take_chart(const sl_mesh *mesh, const sl_chart_job *job, int32_t number, int32_t first, sl_segmentation *s)
 {
-    s->chart[number] = (sl_chart){first, job->count, job->topology, job->flat, job->capped};
+    s->chart[number] = (sl_chart){.first = first,
+                                  .count = job->count,
+                                  .topology = job->topology,
+                                  .flat = job->flat,
+                                  .capped = job->capped,
+                                  .copy_of = -1,
+                                  .mirrored = job->mirrored,
+                                  .kind = job->kind};
     const double *uv = job->corner_uv;
     for (int32_t k = 0; k < job->count; k++) {
         const int32_t f = job->face[k], h = mesh->face_first[f];
@@ -49,6 +56,11 @@ sl_status sl_segmentation_assemble(const sl_mesh *mesh, sl_job_list *charts, sl_
         take_chart(mesh, &charts->job[k], k, first, s);
         first += charts->job[k].count;
     }
+    for (int32_t k = 0; k < s->nchart; k++) {
+        if (charts->job[k].copy) {
+            s->chart[k].copy_of = s->face_chart[charts->job[k].source_face];
+        }
+    }
     *out = s;
     return SL_OK;
 }
@@ -62,6 +74,7 @@ void sl_segmentation_free(sl_segmentation *segmentation)
     sl_free(segmentation->face);
     sl_free(segmentation->face_chart);
     sl_free(segmentation->corner_uv);
+    sl_free(segmentation->source);
     sl_free(segmentation->split);
     sl_free(segmentation);
 }

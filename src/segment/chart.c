@@ -1,5 +1,5 @@
 /* One chart of the recursion: flattened, or split. */
-#include "segment/segment_internal.h"
+#include "segment/share_internal.h"
 
 #include "base/memory.h"
 
@@ -10,6 +10,7 @@ void sl_chart_job_clear(sl_chart_job *job)
     sl_free(job->part);
     sl_cut_list_clear(&job->joined);
     sl_cut_list_clear(&job->seam);
+    sl_copy_list_clear(&job->copies);
     *job = (sl_chart_job){0};
 }
 
@@ -81,8 +82,8 @@ cleanup:
     return status;
 }
 
-/* Connected components of the sides, numbered by first facet, and the seam between them. */
-static sl_status label_parts(sl_piece *piece, const int32_t *side, sl_chart_job *job)
+/* Connected components of the sides are numbered by first facet. */
+sl_status sl_label_parts(sl_piece *piece, const int32_t *side, sl_chart_job *job)
 {
     sl_mesh *m = piece->mesh;
     job->part = sl_alloc(m->nf, sizeof *job->part);
@@ -118,20 +119,18 @@ static sl_status local_partners(const sl_recursion *r, const sl_piece *piece, in
     return SL_OK;
 }
 
-static sl_status split_piece(const sl_recursion *r, sl_piece *piece, sl_chart_job *job)
+static sl_status split_piece(const sl_recursion *r, sl_piece *piece, const int32_t *partner, sl_chart_job *job)
 {
     sl_status status = SL_OK;
-    int32_t *partner = NULL;
     sl_choice choice = {0};
     sl_segment_def def = *r->def;
     def.vsa_regions = job->depth > 0 ? 2 : def.vsa_regions; /* many proxies once, then as any other cut */
-    SL_TRY(local_partners(r, piece, &partner));
     SL_TRY(sl_choose_cut(piece, partner, &def, r->context, &choice));
     if (!choice.found) { /* nothing can be cut: the chart stays as it is, and says so */
         job->done = job->capped = true;
         goto cleanup;
     }
-    SL_TRY(label_parts(piece, choice.side, job));
+    SL_TRY(sl_label_parts(piece, choice.side, job));
     job->split = (sl_split){.depth = job->depth,
                             .facets = job->count,
                             .vector = choice.vector,
@@ -141,27 +140,69 @@ static sl_status split_piece(const sl_recursion *r, sl_piece *piece, sl_chart_jo
                             .length = choice.length,
                             .smoothed = choice.smoothed,
                             .because = job->flat.verdict};
+    if (r->share && r->def->test_halves && job->nparts == 2) {
+        SL_TRY(sl_share_halves(piece, job));
+    }
 cleanup:
     sl_choice_clear(&choice);
-    sl_free(partner);
     return status;
+}
+
+/* Cuts along an axis of symmetry, or near the plane of a near one: a whole component before anything else, a part of
+ * one when it has to be split. */
+static sl_status split_by_symmetry(const sl_recursion *r, sl_piece *piece, const int32_t *partner, sl_chart_job *job,
+                                   bool *taken)
+{
+    sl_status status = SL_OK;
+    *taken = false;
+    if (!r->share || !r->may_split || r->def->test_halves) {
+        return SL_OK;
+    }
+    SL_TRY(sl_cut_axis(r, piece, partner, job, taken));
+    if (!*taken && job->depth == 0 && r->def->symmetry == SL_SYMMETRY_USE_NEAR) {
+        SL_TRY(sl_cut_near_plane(r, piece, partner, job, taken));
+    }
+cleanup:
+    return status;
+}
+
+/* What is copied, in numbers of the mesh. */
+static void copies_to_parent(const sl_piece *piece, const sl_mesh *parent, sl_copy_list *copies)
+{
+    for (int32_t k = 0; k < copies->count; k++) {
+        copies->corner[k] = sl_piece_halfedge(piece, parent, copies->corner[k]);
+        copies->from[k] = sl_piece_halfedge(piece, parent, copies->from[k]);
+    }
 }
 
 void sl_chart_job_run(const sl_recursion *r, sl_chart_job *job)
 {
     sl_status status = SL_OK;
     sl_piece *piece = NULL;
+    int32_t *partner = NULL;
+    bool split = false;
     SL_TRY(sl_piece_create(r->mesh, r->triangulation, job->face, job->count, &piece));
-    SL_TRY(try_whole(r, piece, job));
-    if (!job->done && !r->may_split) {
+    SL_TRY(local_partners(r, piece, &partner));
+    if (job->depth == 0) {
+        SL_TRY(split_by_symmetry(r, piece, partner, job, &split));
+    }
+    if (!split) {
+        SL_TRY(try_whole(r, piece, job));
+    }
+    if (!split && !job->done && job->depth > 0) {
+        SL_TRY(split_by_symmetry(r, piece, partner, job, &split));
+    }
+    if (!split && !job->done && !r->may_split) {
         job->done = job->capped = true;
     }
-    if (!job->done) {
-        SL_TRY(split_piece(r, piece, job));
+    if (!split && !job->done) {
+        SL_TRY(split_piece(r, piece, partner, job));
     }
     to_parent(piece, r->mesh, &job->joined);
     to_parent(piece, r->mesh, &job->seam);
+    copies_to_parent(piece, r->mesh, &job->copies);
 cleanup:
+    sl_free(partner);
     sl_piece_free(piece);
     job->status = status;
 }

@@ -22,7 +22,7 @@ void sl_job_list_clear(sl_job_list *list)
     *list = (sl_job_list){0};
 }
 
-/* Distributes facets by label into new jobs of one depth. label: count numbers below nparts. */
+/* Distributes facets by label into new jobs of one depth. label: count numbers below nparts; -1 = none. */
 static sl_status push_parts(const int32_t *face, const int32_t *label, int32_t count, int32_t nparts, int32_t depth,
                             sl_job_list *list)
 {
@@ -33,7 +33,9 @@ static sl_status push_parts(const int32_t *face, const int32_t *label, int32_t c
         return SL_OUT_OF_MEMORY;
     }
     for (int32_t k = 0; k < count; k++) {
-        size[label[k]]++;
+        if (label[k] >= 0) {
+            size[label[k]]++;
+        }
     }
     for (int32_t p = 0; p < nparts; p++) {
         sl_chart_job job = {.face = sl_alloc(size[p], sizeof *job.face), .depth = depth};
@@ -44,8 +46,10 @@ static sl_status push_parts(const int32_t *face, const int32_t *label, int32_t c
         }
     }
     for (int32_t k = 0; k < count; k++) {
-        sl_chart_job *job = &list->job[start + label[k]];
-        job->face[job->count++] = face != NULL ? face[k] : k;
+        if (label[k] >= 0) {
+            sl_chart_job *job = &list->job[start + label[k]];
+            job->face[job->count++] = face != NULL ? face[k] : k;
+        }
     }
 cleanup:
     sl_free(size);

@@ -37,5 +37,6 @@ sl_segment_def sl_segment_paper(void)
     def.flatten.minimise_stretch = false;
     def.flatten.tutte = false;
     def.flatten.max_angle = INFINITY;
+    def.test_halves = true;
     return def;
 }

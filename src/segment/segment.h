@@ -7,6 +7,7 @@
 #include "mesh/topology.h"
 #include "param/flatten.h"
 #include "spectral/spectrum.h"
+#include "symmetry/symmetry.h"
 
 /* Which of the cuts that pass the connectivity filter is taken. */
 typedef enum sl_cut_rule {
@@ -37,7 +38,9 @@ typedef struct sl_segment_def {
     int32_t vsa_regions;      /* proxies of a component's first cut, then 2 a cut; 0 = by error (default) */
     double vsa_error;         /* L2,1 error over area where proxies are added no more; default 0.05 */
     sl_symmetry_use symmetry; /* default auto */
-    bool test_halves;         /* after each cut, are its halves isomorphic (paper, Sec. 4.3)? default false */
+    bool test_halves;         /* the paper's way (Sec. 4.3): no search for axes, but after each cut it is tested whether
+                                 its halves are isomorphic; default false */
+    bool unshare;             /* copies are laid out too, turned the right way round; default false */
     sl_cut_rule rule;
     int32_t vectors;    /* eigenvectors computed a cut; default 30 */
     sl_pairing pairing; /* triangles back into quads in the facet graph; default auto */
@@ -45,8 +48,9 @@ typedef struct sl_segment_def {
     bool join;          /* genus-0 charts with several borders: loops joined by shortest paths; default true */
     bool sew;           /* merge neighbours while they stay valid; default true */
     double sew_stretch; /* L2 bound of a merged chart; default 1.25 */
-    bool protect_first; /* never sew the first cut's seam; default true */
-    int32_t max_charts; /* cap; reaching it stops splitting and is reported; default 100000 */
+    bool protect_first; /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
+    int32_t max_charts; /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
+                           reported; default 100000 */
     sl_flatten_def flatten;
 } sl_segment_def;
 
@@ -60,8 +64,19 @@ typedef struct sl_chart {
     int32_t first, count; /* its facets: sl_segmentation.face[first .. first + count - 1], ascending */
     sl_topology topology;
     sl_flatten_result flat;
-    bool capped; /* left as it is because max_charts was reached or it cannot be split */
+    bool capped;           /* left as it is because max_charts was reached or it cannot be split */
+    int32_t copy_of;       /* chart whose UVs this one takes bit for bit, itself no copy; -1 = its own */
+    bool mirrored;         /* a copy: its triangles have negative area in UV space */
+    sl_symmetry_kind kind; /* a copy: how far the geometry follows, exact or near */
 } sl_chart;
+
+/* What a symmetry had to do with a split. */
+typedef enum sl_split_symmetry {
+    SL_SPLIT_PLAIN,  /* nothing */
+    SL_SPLIT_MIRROR, /* cut along the axis; the other half copies */
+    SL_SPLIT_HALVES, /* an ordinary cut whose halves turned out to be isomorphic; the other half copies */
+    SL_SPLIT_PLANE   /* cut near the plane of a near symmetry; nothing is shared */
+} sl_split_symmetry;
 
 /* One split of the recursion, in the order taken. */
 typedef struct sl_split {
@@ -74,15 +89,32 @@ typedef struct sl_split {
     int32_t parts;      /* charts made */
     double length;      /* seam length, normalised mesh */
     bool smoothed;
-    sl_flatten_verdict because; /* why the chart had to be split */
+    sl_split_symmetry symmetry;
+    int32_t fixed;              /* facets that straddle the axis: they stay with the first half and are not shared */
+    sl_flatten_verdict because; /* why the chart had to be split (nothing is wrong with a component cut at its axis) */
 } sl_split;
+
+/* What symmetry saved. */
+typedef struct sl_sharing_info {
+    int32_t axes;       /* cuts whose other half copies */
+    int32_t components; /* components that copy another */
+    int32_t copies;     /* charts that copy another */
+    int32_t refused;    /* copies that were not valid on their own geometry and were laid flat themselves */
+    double area;        /* of the copies over all: the texture memory saved, densities being equal */
+    bool truncated;     /* the list of automorphisms was cut short somewhere */
+    int32_t planes;     /* first cuts taken at the plane of a near symmetry */
+    double misfit;      /* the worst misfit of those, over the diagonal */
+} sl_sharing_info;
 
 typedef struct sl_segmentation {
     int32_t nchart;
     sl_chart *chart;     /* nchart, numbered by first facet */
     int32_t *face;       /* nf: facets grouped by chart */
     int32_t *face_chart; /* nf: chart of a facet */
-    double *corner_uv;   /* nh x 2: each chart in its own frame, area = 3D area of the normalised mesh */
+    double *corner_uv;   /* nh x 2: each chart in its own frame, area = 3D area of the normalised mesh; a copy in its
+                            source's */
+    int32_t *source;     /* nh: the corner whose UV a copy's corner takes, -1 = its own; NULL where nothing is shared */
+    sl_sharing_info sharing;
     int32_t nsplit;
     sl_split *split;
     int32_t merges; /* charts sewn together */
@@ -91,9 +123,11 @@ typedef struct sl_segmentation {
 } sl_segmentation;
 
 /* Segments and flattens. The mesh's seams are cut in place (twin to sew pointers); on failure it is as it was.
- * Components and isolated facets become charts of their own; seams already cut stand as borders. Charts whose stretch
- * had to be minimised to meet the bound are relaxed to the end once they are final.
- * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for any number of threads. */
+ * A component with an exact mirror symmetry is cut along its axis first, and one half takes its UVs from the other; so
+ * is every part that must be split anyway. Copies of a component take theirs from the first. Components and isolated
+ * facets become charts of their own; seams already cut stand as borders. Charts whose stretch had to be minimised to
+ * meet the bound are relaxed to the end once they are final. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes
+ * for any number of threads. */
 SL_NODISCARD sl_status sl_segment(sl_mesh *mesh, const sl_triangulation *triangulation, const sl_segment_def *def,
                                   const sl_context *context, sl_segmentation **out);
 

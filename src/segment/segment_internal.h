@@ -90,6 +90,16 @@ void sl_choice_measure(const sl_mesh *mesh, sl_choice *choice);
 SL_NODISCARD sl_status sl_lookahead_score(const sl_piece *piece, const uint8_t *side, const sl_context *context,
                                           double *score);
 
+/* Corners of the mesh that take their UVs from others, found at one cut. */
+typedef struct sl_copy_list {
+    int32_t *corner, *from; /* count each, owned */
+    int32_t count;
+    bool reverses; /* the orientation */
+    sl_symmetry_kind kind;
+} sl_copy_list;
+
+void sl_copy_list_clear(sl_copy_list *list);
+
 /* A chart on its way: found by the recursion, flattened, then done or split into parts. */
 typedef struct sl_chart_job {
     int32_t *face; /* count facets of the mesh, ascending */
@@ -103,9 +113,17 @@ typedef struct sl_chart_job {
     double *corner_uv;  /* 2 a corner, facet by facet */
     sl_cut_list joined; /* halfedges of the mesh cut by loop joining */
     int32_t nparts;
-    int32_t *part;    /* count: part of a facet, numbered by first facet */
+    int32_t *part; /* count: part of a facet, numbered by first facet; -1 = it copies and needs no chart of its own */
     sl_cut_list seam; /* halfedges of the mesh between the parts */
     sl_split split;
+    sl_copy_list copies; /* of the facets of part -1 */
+    bool truncated;      /* not all automorphisms were listed */
+    double misfit;       /* of the plane taken, see sl_sharing_info */
+    /* a chart that is a copy */
+    bool copy;
+    int32_t source_face; /* first facet of the chart it copies */
+    bool mirrored;
+    sl_symmetry_kind kind;
 } sl_chart_job;
 
 void sl_chart_job_clear(sl_chart_job *job); /* frees, zeroes */
@@ -118,6 +136,7 @@ typedef struct sl_recursion {
     const int32_t *partner;    /* nf, NULL = no pairing */
     const sl_context *context; /* without progress where jobs run in parallel */
     bool may_split;            /* false: the cap is reached, flatten only */
+    bool share;                /* look for symmetries */
 } sl_recursion;
 
 /* Flattens a chart and, where that is not valid, splits it. The outcome, its status included, is in the job. */
@@ -151,8 +170,12 @@ typedef void sl_job_fn(const sl_recursion *recursion, sl_chart_job *job);
 SL_NODISCARD sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_fn *fn,
                                    sl_job_list *list);
 
+/* Marks of edges: of a first cut, or of an axis whose other side copies (or might have). */
+enum { SL_CUT_FIRST = 1, SL_CUT_AXIS = 2 };
+
 /* Merges neighbouring charts while they stay valid and within def->sew_stretch. work: the mesh with all charts' seams
- * cut; original: as the caller gave it (its own seams are never sewn); first_cut[h] = 1 on edges of the first cuts.
+ * cut; original: as the caller gave it (its own seams are never sewn); first_cut[h]: marks; those of axes are never
+ * sewn. Facets may belong to no chart.
  * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
 SL_NODISCARD sl_status sl_sew_charts(sl_mesh *work, const sl_mesh *original, const sl_triangulation *triangulation,
                                      const uint8_t *first_cut, const sl_segment_def *def, const sl_context *context,

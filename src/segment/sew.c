@@ -123,6 +123,9 @@ static sl_status collect_pairs(sew_state *s)
     memset(s->perimeter, 0, (size_t)s->charts->count * sizeof *s->perimeter);
     for (int32_t h = 0; h < m->nh; h++) {
         const int32_t a = s->chart_of[m->face[h]];
+        if (a < 0) { /* the facet copies another's UVs and has no chart */
+            continue;
+        }
         const double length = m->twin[h] < 0 ? sl_mesh_edge_length(m, h) : 0.0;
         s->perimeter[a] += length;
         const int32_t b = m->sew[h] >= 0 ? s->chart_of[m->face[m->sew[h]]] : a;
@@ -202,11 +205,12 @@ cleanup:
     return status;
 }
 
-/* Edges that the caller had cut before, and with protect_first those of the first cuts, stay. */
+/* Edges that the caller had cut before stay, axes too, and with protect_first those of the first cuts. */
 static void mark_sewable(sew_state *s, const sl_mesh *original, const uint8_t *first_cut, bool protect)
 {
     for (int32_t h = 0; h < s->work->nh; h++) {
-        s->sewable[h] = original->twin[h] >= 0 && s->work->sew[h] >= 0 && !(protect && first_cut[h]);
+        const bool stays = first_cut[h] == SL_CUT_AXIS || (protect && first_cut[h] != 0);
+        s->sewable[h] = original->twin[h] >= 0 && s->work->sew[h] >= 0 && !stays;
     }
 }
 
@@ -225,6 +229,7 @@ static sl_status sew_state_create(sew_state *s)
         s->batch == NULL || s->job == NULL) {
         return SL_OUT_OF_MEMORY;
     }
+    memset(s->chart_of, 0xff, (size_t)s->work->nf * sizeof *s->chart_of);
     for (int32_t c = 0; c < n; c++) {
         s->stamp[c] = s->next_stamp++;
         for (int32_t k = 0; k < s->charts->job[c].count; k++) {

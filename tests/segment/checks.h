@@ -77,7 +77,8 @@ static inline double test_chart_stretch(const sl_mesh *m, const sl_triangulation
                 p[j] = m->xyz + 3 * m->origin[corner[j]];
                 q[j] = s->corner_uv + 2 * corner[j];
             }
-            *flips += sl_orient2d(q[0], q[1], q[2]) <= 0;
+            const int turn = sl_orient2d(q[0], q[1], q[2]);
+            *flips += (s->chart[c].mirrored ? -turn : turn) <= 0;
             double a[3], b[3], n[3];
             sl_vec3_sub(p[1], p[0], a);
             sl_vec3_sub(p[2], p[0], b);
