@@ -42,10 +42,11 @@ sl_status gen_fork(uint64_t seed, int32_t scale, sl_generated **out)
 typedef struct branch {
     double base[3], direction[3];
     double length, radius;
+    int32_t stations;
     int32_t quad; /* at its end */
 } branch;
 
-enum { BRANCH_STATIONS = 4, BOUGHS = 4 };
+enum { MOST_STATIONS = 8, BOUGHS = 4 };
 
 static double between(sl_rng *rng, double lo, double hi)
 {
@@ -55,9 +56,9 @@ static double between(sl_rng *rng, double lo, double hi)
 /* Extrudes the region along the branch, bending up a little; the end is set into *tip. */
 static void grow(gen_cage *cage, const int32_t *region, int32_t count, const branch *b, double tip[3])
 {
-    gen_station station[BRANCH_STATIONS];
-    for (int s = 0; s < BRANCH_STATIONS; s++) {
-        const double t = (s + 1.0) / BRANCH_STATIONS;
+    gen_station station[MOST_STATIONS];
+    for (int s = 0; s < b->stations; s++) {
+        const double t = (s + 1.0) / b->stations;
         for (int k = 0; k < 3; k++) {
             station[s].centre[k] = b->base[k] + b->length * (t * b->direction[k] + (k == 1 ? 0.18 * t * t : 0.0));
         }
@@ -65,9 +66,9 @@ static void grow(gen_cage *cage, const int32_t *region, int32_t count, const bra
     }
     const double side[3] = {-b->direction[2], 0.0, b->direction[0]}; /* level, square to the branch */
     const double level = sl_vec3_norm(side);
-    gen_cage_limb(cage, region, count, level > 0.1 ? side : side_x, station, BRANCH_STATIONS);
+    gen_cage_limb(cage, region, count, level > 0.1 ? side : side_x, station, b->stations);
     for (int k = 0; k < 3; k++) {
-        tip[k] = station[BRANCH_STATIONS - 1].centre[k];
+        tip[k] = station[b->stations - 1].centre[k];
     }
 }
 
@@ -90,6 +91,7 @@ static void add_bough(gen_cage *cage, sl_rng *rng, int which, double top, double
     b->length = between(rng, 1.7, 2.5);
     b->radius = between(rng, 0.38, 0.48);
     b->quad = quad;
+    b->stations = 3 + which; /* each another number, so that the connectivity has no symmetry either */
     grow(cage, &quad, 1, b, tip);
 }
 
@@ -130,7 +132,7 @@ static void add_twigs(gen_cage *cage, sl_rng *rng, const branch *bough, const do
     }
     for (int k = 0; k < 2 && !cage->failed; k++) {
         const double sign = k == 0 ? 1.0 : -1.0;
-        branch b = {.length = between(rng, 0.9, 1.6), .radius = between(rng, 0.20, 0.25)};
+        branch b = {.length = between(rng, 0.9, 1.6), .radius = between(rng, 0.15, 0.19), .stations = 3 + k};
         double end[3];
         aim(turn + sign * between(rng, 0.45, 0.75), rise + between(rng, -0.25, 0.35), b.direction);
         for (int i = 0; i < 3; i++) {
