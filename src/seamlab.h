@@ -36,5 +36,7 @@
 #include "sparse/cholesky.h"
 #include "spectral/spectrum.h"
 #include "symmetry/symmetry.h"
+#include "theorem/families.h"
+#include "theorem/meshes.h"
 
 #endif

@@ -60,6 +60,7 @@ int cli_demo(int argc, char **argv);
 int cli_measure(int argc, char **argv);
 int cli_segment(int argc, char **argv);
 int cli_spectrum(int argc, char **argv);
+int cli_theorem(int argc, char **argv);
 int cli_unwrap(int argc, char **argv);
 
 /* Does a file name end in this, whatever its case? */
