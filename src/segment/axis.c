@@ -128,9 +128,17 @@ static void enter(axis_search *s, axis candidate)
     }
 }
 
+/* Exact also where a rigid motion carries every corner onto its image as nearly as the edge lengths of large facets must
+ * agree: coordinates written with six decimals leave short edges no more than that. */
+static bool is_exact(const sl_symmetry_map *map)
+{
+    return map->kind == SL_SYMMETRY_EXACT ||
+           (map->kind == SL_SYMMETRY_NEAR && map->deviation <= sl_symmetry_default().exact);
+}
+
 static bool is_usable(const sl_symmetry_map *map, sl_symmetry_use use)
 {
-    const bool close = map->kind == SL_SYMMETRY_EXACT || (map->kind == SL_SYMMETRY_NEAR && use == SL_SYMMETRY_USE_NEAR);
+    const bool close = is_exact(map) || (map->kind == SL_SYMMETRY_NEAR && use == SL_SYMMETRY_USE_NEAR);
     return map->from == map->to && map->order == 2 && map->separates && close;
 }
 
@@ -243,7 +251,7 @@ static sl_status take_axis(axis_search *s, sl_piece *piece, const axis *chosen, 
     fill_image(piece->mesh, s->symmetry, chosen->map, s->image);
     SL_TRY(list_copies(piece->mesh, s->side, s->image, &job->copies));
     job->copies.reverses = chosen->map->reverses;
-    job->copies.kind = chosen->map->kind;
+    job->copies.kind = is_exact(chosen->map) ? SL_SYMMETRY_EXACT : SL_SYMMETRY_NEAR;
     for (int32_t f = 0; f < n; f++) {
         side[f] = s->side[f];
     }
