@@ -9,16 +9,19 @@
 
 enum {
     FEW = 512,           /* halfedges and orientations that are all tried at once */
+    LEAST = 4,           /* automorphisms listed, however large */
     MANY = 8192,         /* candidates of exact geometry, at most */
     SOME = 256,          /* candidates of other geometry, where there are more than FEW */
     PATCH = 64,          /* cells a candidate is looked at first; */
     WIDE_PATCH = 256,    /* where geometry is not exact */
-    FREE_WORK = 1 << 18, /* corners that may be walked in vain, beside */
-    FREE_ROUNDS = 16     /* this many times those of the component */
+    FREE_WORK = 1 << 20, /* corners that may be walked in vain, beside */
+    FREE_ROUNDS = 4      /* this many times those of the component */
 };
 
 static const double ROUNDING = 4e-7;   /* of distances kept as floats, over the diagonal */
 static const double INVOLUTION = 0.05; /* trace of a patch's isometry against that of an involution's */
+
+static const double TIE = 1e-9; /* of cosines and traces: the first candidate wins */
 
 /* What a patch looks like. */
 enum { LOOKS_MIRROR, LOOKS_INVOLUTION, LOOKS_OTHER };
@@ -27,6 +30,7 @@ typedef struct candidate {
     int32_t corner;
     bool reverses, tried;
     uint8_t level, looks;   /* level: an sl_symmetry_kind */
+    double trace;           /* of its isometry: the smaller the angle, the larger */
     double normal[3], near; /* of a mirror; largest |cosine| to the normals of mirrors found */
 } candidate;
 
@@ -43,10 +47,15 @@ typedef struct finder {
 static void look_at(const finder *f, candidate *c, int32_t patch)
 {
     double T[12];
-    sl_symmetry_fit(f->search->cells, f->component, f->component, patch, c->reverses, f->search->image, T);
+    const double distance =
+        sl_symmetry_fit(f->search->cells, f->component, f->component, patch, c->reverses, f->search->image, T);
+    while (c->level < SL_SYMMETRY_TOPOLOGICAL && distance > f->tolerance[c->level]) {
+        c->level++;
+    }
     const double trace = T[0] + T[5] + T[10];
     const double det =
         T[0] * (T[5] * T[10] - T[6] * T[9]) - T[1] * (T[4] * T[10] - T[6] * T[8]) + T[2] * (T[4] * T[9] - T[5] * T[8]);
+    c->trace = trace;
     const bool mirror = det < 0.0 && fabs(trace - 1.0) < INVOLUTION;
     const bool involution = fabs(trace - (det < 0.0 ? -3.0 : -1.0)) < INVOLUTION;
     c->looks = mirror ? LOOKS_MIRROR : involution ? LOOKS_INVOLUTION : LOOKS_OTHER;
@@ -79,13 +88,10 @@ static sl_status consider(finder *f, int32_t corner, bool reverses, sl_symmetry_
         return SL_OK;
     }
     candidate c = {.corner = corner, .reverses = reverses, .level = SL_SYMMETRY_EXACT};
-    while (c.level < level && (double)worst > f->tolerance[c.level]) {
-        c.level++;
-    }
-    if (c.level < least) { /* had its turn */
+    look_at(f, &c, patch);
+    if (c.level < least || c.level > level) { /* had its turn, or will */
         return SL_OK;
     }
-    look_at(f, &c, patch);
     sl_status status = sl_reserve((void **)&f->list, &f->capacity, f->count + 1, sizeof *f->list);
     if (status == SL_OK) {
         f->list[f->count++] = c;
@@ -124,7 +130,8 @@ cleanup:
     return status;
 }
 
-/* Is a to be tried before b? By level, by looks; of mirrors the one farthest from those found. */
+/* Is a to be tried before b? By level, by looks; of mirrors the one farthest from those found, of others the one of the
+ * smallest angle: in a cyclic group it generates the rest. */
 static bool before(const candidate *a, const candidate *b)
 {
     if (a->level != b->level) {
@@ -133,7 +140,10 @@ static bool before(const candidate *a, const candidate *b)
     if (a->looks != b->looks) {
         return a->looks < b->looks;
     }
-    return a->looks == LOOKS_MIRROR && a->level != SL_SYMMETRY_TOPOLOGICAL && a->near < b->near - INVOLUTION;
+    if (a->level == SL_SYMMETRY_TOPOLOGICAL || a->looks == LOOKS_INVOLUTION) {
+        return false;
+    }
+    return a->looks == LOOKS_MIRROR ? a->near < b->near - TIE : a->trace > b->trace + TIE;
 }
 
 static void note_mirror(finder *f, const double normal[3])
@@ -212,7 +222,8 @@ sl_status sl_symmetry_automorphisms(sl_symmetry_search *search, int32_t componen
     const int64_t corners = sl_cells_corners(cells, component), fit = def->corners / corners;
     const int32_t first = search->out->nmap;
     finder f = {.search = search, .component = component};
-    f.cap = fit < def->most ? (int32_t)(fit > 1 ? fit : 1) : def->most;
+    f.cap = fit < def->most ? (int32_t)(fit > LEAST ? fit : LEAST) : def->most;
+    f.cap = f.cap < def->most ? f.cap : def->most;
     f.tolerance[SL_SYMMETRY_EXACT] = (2.0 * def->exact + ROUNDING) * cells->size[component];
     f.tolerance[SL_SYMMETRY_NEAR] = (2.0 * def->near + ROUNDING) * cells->size[component];
     f.tolerance[SL_SYMMETRY_TOPOLOGICAL] = INFINITY;

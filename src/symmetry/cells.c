@@ -20,7 +20,7 @@ static sl_status allocate(const sl_mesh *mesh, const sl_raw_cells *raw, const sl
     c->mirror_twin = sl_alloc(raw->ncorner, sizeof *c->mirror_twin);
     c->point = sl_alloc(raw->ncorner, sizeof *c->point);
     c->halfedge = sl_alloc(raw->ncorner, sizeof *c->halfedge);
-    c->at = sl_alloc(mesh->nh, sizeof *c->at);
+    c->at = raw->at != NULL ? sl_alloc(mesh->nh, sizeof *c->at) : NULL;
     c->pair = raw->diagonal != NULL ? sl_alloc(raw->ncell, sizeof *c->pair) : NULL;
     c->color = sl_alloc(raw->ncell, sizeof *c->color);
     c->sum = sl_calloc(parts->components, sizeof *c->sum);
@@ -28,11 +28,12 @@ static sl_status allocate(const sl_mesh *mesh, const sl_raw_cells *raw, const sl
     c->centre = sl_calloc(3 * (int64_t)parts->components, sizeof *c->centre);
     c->size = sl_calloc(parts->components, sizeof *c->size);
     c->edges = sl_calloc(parts->components, sizeof *c->edges);
+    c->shortest = sl_calloc(parts->components, sizeof *c->shortest);
     c->radius = sl_alloc(raw->ncorner, sizeof *c->radius);
     return c->component == NULL || c->first == NULL || c->cell == NULL || c->twin == NULL || c->mirror_twin == NULL ||
-                   c->point == NULL || c->halfedge == NULL || c->at == NULL ||
+                   c->point == NULL || c->halfedge == NULL || (raw->at != NULL && c->at == NULL) ||
                    (raw->diagonal != NULL && c->pair == NULL) || c->color == NULL || c->sum == NULL || c->xyz == NULL ||
-                   c->centre == NULL || c->size == NULL || c->edges == NULL || c->radius == NULL
+                   c->centre == NULL || c->size == NULL || c->edges == NULL || c->shortest == NULL || c->radius == NULL
                ? SL_OUT_OF_MEMORY
                : SL_OK;
 }
@@ -76,26 +77,34 @@ static void translate_corners(const sl_mesh *mesh, const sl_raw_cells *raw, cons
                               const uint64_t *color, sl_cells *c)
 {
     for (int32_t j = 0; j < c->ncell; j++) {
-        const int32_t first = c->first[j], end = c->first[j + 1], r = c->halfedge[first];
+        const int32_t r = c->halfedge[c->first[j]];
         c->color[j] = color[raw->cell[r]];
         if (c->pair != NULL) {
             c->pair[j] = raw->diagonal[mesh->face[raw->corner[r]]] >= 0;
         }
-        for (int32_t h = first; h < end; h++) {
-            const int32_t t = raw->twin[c->halfedge[h]];
-            c->twin[h] = t >= 0 ? renumber[t] : -1;
-        }
-    }
-    for (int32_t h = 0; h < mesh->nh; h++) {
-        c->at[h] = renumber[raw->at != NULL ? raw->at[h] : h];
     }
     for (int32_t h = 0; h < c->ncorner; h++) {
-        const int32_t first = c->first[c->cell[h]], end = c->first[c->cell[h] + 1];
-        const int32_t t = c->twin[h > first ? h - 1 : end - 1];
-        c->mirror_twin[h] = t;
-        if (t >= 0) {
-            const int32_t j = c->cell[t];
-            c->mirror_twin[h] = t + 1 < c->first[j + 1] ? t + 1 : c->first[j];
+        const int32_t t = raw->twin[c->halfedge[h]];
+        c->twin[h] = t >= 0 ? renumber[t] : -1;
+    }
+    for (int32_t h = 0; h < mesh->nh && raw->at != NULL; h++) {
+        c->at[h] = renumber[raw->at[h]];
+    }
+}
+
+/* The corner after the twin of the corner before. */
+static void find_mirror_twins(sl_cells *c)
+{
+    for (int32_t j = 0; j < c->ncell; j++) {
+        int32_t before = c->first[j + 1] - 1;
+        for (int32_t h = c->first[j]; h < c->first[j + 1]; h++) {
+            int32_t t = c->twin[before];
+            if (t >= 0) {
+                const int32_t cell = c->cell[t];
+                t = t + 1 < c->first[cell + 1] ? t + 1 : c->first[cell];
+            }
+            c->mirror_twin[h] = t;
+            before = h;
         }
     }
 }
@@ -141,13 +150,16 @@ static void measure_component(sl_cells *c, int32_t k)
         extent[i] = high[i] - low[i];
     }
     c->size[k] = sl_vec3_norm(extent);
+    c->shortest[k] = HUGE_VAL;
     for (int32_t j = c->component[k]; j < c->component[k + 1]; j++) {
         const double *before = &c->xyz[3 * (int64_t)c->point[c->first[j + 1] - 1]];
         c->sum[k] += c->color[j];
         for (int32_t h = c->first[j]; h < c->first[j + 1]; h++) {
             const double *p = &c->xyz[3 * (int64_t)c->point[h]];
             c->radius[h] = (float)sl_vec3_distance(p, centre);
-            c->edges[k] += sl_vec3_distance(p, before);
+            const double length = sl_vec3_distance(p, before);
+            c->edges[k] += length;
+            c->shortest[k] = length < c->shortest[k] ? length : c->shortest[k];
             before = p;
         }
     }
@@ -166,6 +178,15 @@ sl_status sl_cells_create(const sl_mesh *mesh, const sl_raw_cells *raw, const sl
     SL_TRY(allocate(mesh, raw, parts, c));
     number_cells(raw, start, c, renumber);
     translate_corners(mesh, raw, renumber, color, c);
+    find_mirror_twins(c);
+    if (raw->at == NULL) {
+        c->at = renumber;
+        renumber = sl_alloc(raw->npoint, sizeof *renumber);
+    }
+    if (renumber == NULL) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
+    }
     translate_points(mesh, raw, renumber, c);
     for (int32_t k = 0; k < c->components; k++) {
         measure_component(c, k);
@@ -198,6 +219,7 @@ void sl_cells_free(sl_cells *cells)
     sl_free(cells->centre);
     sl_free(cells->size);
     sl_free(cells->edges);
+    sl_free(cells->shortest);
     sl_free(cells->radius);
     sl_free(cells);
 }

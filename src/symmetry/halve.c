@@ -4,25 +4,29 @@
 #include "base/memory.h"
 #include "geom/vec3.h"
 
+enum { FIXED = -1, NEW = -2 };
+
 /* Parts of the component without axis edges and fixed facets. */
 typedef struct halver {
     const sl_mesh *mesh;
     const sl_symmetry *parts;
     const sl_symmetry_map *map;
     const int32_t *face;   /* map->count: facets of the component */
-    int32_t *label, *list; /* map->count: part of a facet, -1 = fixed; facets part by part */
+    int32_t *label, *list; /* map->count: part of a facet, or FIXED; facets part by part */
     int32_t *begin;        /* labels + 1: into list */
     int32_t labels;
 } halver;
 
-static int32_t place_of(const halver *v, int32_t f)
+static inline int32_t place_of(const halver *v, int32_t f)
 {
     return v->parts->place[f] - v->parts->first[v->map->from];
 }
 
-static bool is_fixed(const halver *v, int32_t f)
+/* Do f, with image `image`, and its neighbour g meet on the axis? */
+static inline bool meet_on_axis(const halver *v, int32_t f, int32_t image, int32_t g)
 {
-    return v->map->facet[place_of(v, f)] == f;
+    const int32_t *unit = v->parts->unit;
+    return unit[image] == unit[g] && f != g && (unit[f] != unit[g] || image == g);
 }
 
 static void find_parts(halver *v)
@@ -30,10 +34,10 @@ static void find_parts(halver *v)
     const sl_mesh *m = v->mesh;
     int32_t end = 0;
     for (int32_t i = 0; i < v->map->count; i++) {
-        v->label[i] = -1;
+        v->label[i] = v->map->facet[i] == v->face[i] ? FIXED : NEW;
     }
     for (int32_t i = 0; i < v->map->count; i++) {
-        if (v->label[i] >= 0 || is_fixed(v, v->face[i])) {
+        if (v->label[i] != NEW) {
             continue;
         }
         int32_t next = end;
@@ -41,10 +45,10 @@ static void find_parts(halver *v)
         v->label[i] = v->labels;
         v->list[end++] = v->face[i];
         for (; next < end; next++) {
-            const int32_t f = v->list[next];
+            const int32_t f = v->list[next], image = v->map->facet[place_of(v, f)];
             for (int32_t h = m->face_first[f]; h < m->face_first[f + 1]; h++) {
                 const int32_t g = m->twin[h] >= 0 ? m->face[m->twin[h]] : f, at = place_of(v, g);
-                if (v->label[at] < 0 && !is_fixed(v, g) && !sl_symmetry_on_axis(m, v->parts, v->map, h)) {
+                if (v->label[at] == NEW && !meet_on_axis(v, f, image, g)) {
                     v->label[at] = v->labels;
                     v->list[end++] = g;
                 }
@@ -109,12 +113,13 @@ static void measure_axis(const halver *v, const uint8_t *side, sl_symmetry_map *
     map->fixed_facets = map->axis_edges = 0;
     map->axis_length = 0.0;
     for (int32_t i = 0; i < map->count; i++) {
-        const int32_t f = v->face[i];
-        map->fixed_facets += is_fixed(v, f);
+        const int32_t f = v->face[i], image = map->facet[i];
+        map->fixed_facets += image == f;
         for (int32_t h = m->face_first[f]; h < m->face_first[f + 1]; h++) {
-            if (m->twin[h] > h) {
-                const int32_t g = m->face[m->twin[h]];
-                map->axis_edges += sl_symmetry_on_axis(m, v->parts, map, h);
+            const int32_t t = m->twin[h];
+            if (t > h) {
+                const int32_t g = m->face[t];
+                map->axis_edges += meet_on_axis(v, f, image, g);
                 if (map->separates && side[i] != side[place_of(v, g)]) {
                     map->axis_length += sl_mesh_edge_length(m, h);
                 }

@@ -22,6 +22,7 @@ typedef struct refiner {
     const sl_mesh *mesh;
     const sl_raw_cells *raw;
     uint64_t *color, *next; /* ncell */
+    double *distance;       /* of the largest component: from the centre */
     int32_t *list;          /* cells of the component */
     int32_t count;
     color_count *table;
@@ -46,7 +47,8 @@ static uint64_t first_color(const refiner *r, int32_t c)
     const bool pair = raw->diagonal != NULL && raw->diagonal[r->mesh->face[raw->corner[raw->first[c]]]] >= 0;
     uint64_t sum = 0;
     for (int32_t h = raw->first[c]; h < raw->first[c + 1]; h++) {
-        sum += mix(2u * (uint64_t)(uint32_t)raw->valence[raw->point[h]] + (raw->twin[h] < 0 ? 1u : 0u));
+        sum += mix(2u * (uint64_t)(uint32_t)raw->valence[raw->point[h]]);
+        sum += raw->twin[h] < 0 ? mix(1u) : 0u; /* apart: in a mirror another corner's halfedge is the border */
     }
     return mix(sum + 2u * (uint64_t)degree + (pair ? 1u : 0u));
 }
@@ -155,10 +157,11 @@ static double cell_distance(const refiner *r, const double centre[3], int32_t c)
 static int32_t rare_distance(refiner *r, uint64_t color)
 {
     double centre[3], low = HUGE_VAL, high = 0.0;
+    double *distance = r->distance;
     find_centre(r, centre);
     for (int32_t i = 0; i < r->count; i++) {
         if (r->color[r->list[i]] == color) {
-            const double d = cell_distance(r, centre, r->list[i]);
+            const double d = distance[i] = cell_distance(r, centre, r->list[i]);
             low = fmin(low, d);
             high = fmax(high, d);
         }
@@ -167,13 +170,13 @@ static int32_t rare_distance(refiner *r, uint64_t color)
     const double scale = high > low ? DISTANCE_BINS / (high - low) : 0.0;
     for (int32_t i = 0; i < r->count; i++) {
         if (r->color[r->list[i]] == color) {
-            r->bin[(int32_t)((cell_distance(r, centre, r->list[i]) - low) * scale)]++;
+            r->bin[(int32_t)((distance[i] - low) * scale)]++;
         }
     }
     int32_t best = r->list[0], fewest = INT32_MAX;
     for (int32_t i = 0; i < r->count; i++) {
         if (r->color[r->list[i]] == color) {
-            const int32_t b = (int32_t)((cell_distance(r, centre, r->list[i]) - low) * scale);
+            const int32_t b = (int32_t)((distance[i] - low) * scale);
             const int32_t n = r->bin[b] + (b > 0 ? r->bin[b - 1] : 0) + (b < DISTANCE_BINS ? r->bin[b + 1] : 0);
             if (n < fewest) {
                 fewest = n;
@@ -211,9 +214,10 @@ sl_status sl_symmetry_refine(const sl_mesh *mesh, const sl_raw_cells *raw, const
     }
     refiner r = {.mesh = mesh, .raw = raw, .color = color};
     r.next = sl_alloc(most, sizeof *r.next);
+    r.distance = sl_alloc(most, sizeof *r.distance);
     r.list = sl_alloc(most, sizeof *r.list);
     r.table = sl_alloc(size, sizeof *r.table);
-    if (r.next == NULL || r.list == NULL || r.table == NULL) {
+    if (r.next == NULL || r.distance == NULL || r.list == NULL || r.table == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -230,6 +234,7 @@ sl_status sl_symmetry_refine(const sl_mesh *mesh, const sl_raw_cells *raw, const
     }
 cleanup:
     sl_free(r.next);
+    sl_free(r.distance);
     sl_free(r.list);
     sl_free(r.table);
     return status;

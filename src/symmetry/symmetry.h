@@ -32,7 +32,8 @@ typedef struct sl_symmetry_map {
     bool reverses;    /* the orientation: a mirror image */
     int32_t order;    /* smallest k > 0 with map^k = identity (pairs taken as one facet); 0 for a copy (from != to) */
     sl_symmetry_kind kind;
-    double misfit;       /* largest difference of corresponding edge lengths, over the longer of the two */
+    double misfit; /* largest difference of corresponding edge lengths, over the longer of the two (at least 1e-6 of the
+                      diagonal); where the deviation bounds it by 1e-3 of def.exact, that bound */
     double deviation;    /* largest distance of a moved corner to its image, over the component's diagonal */
     double isometry[12]; /* 3 x 4, row-major: the rigid motion (with a reflection where det < 0) that fits best */
     /* of an involution (order 2) */
@@ -65,8 +66,8 @@ typedef struct sl_symmetry_def {
     bool mirrors_only; /* involutions that separate, and copies, only; default false */
     bool of_copies;    /* also the automorphisms of copies: those of the original, moved; default false */
     int32_t most;      /* maps a component; default SL_SYMMETRY_MOST */
-    int64_t corners;   /* in all automorphisms of a component, at least one map is kept; default 2^24, which leaves 64
-                          maps to 87,000 triangles and 5 to a million */
+    int64_t corners;   /* in all automorphisms of a component, though four are listed; default 2^23, which leaves 64
+                          to 43,000 triangles and more */
 } sl_symmetry_def;
 
 sl_symmetry_def sl_symmetry_default(void);

@@ -58,7 +58,8 @@ typedef struct sl_cells {
     uint8_t *pair;             /* ncell; NULL = no pairs */
     uint64_t *color, *sum;     /* ncell; components: of all colours */
     double *xyz, *centre;      /* npoint x 3; components x 3: mean of the corners */
-    double *size, *edges;      /* components: diagonal of the bounding box; sum of all edge lengths */
+    double *size;              /* components: diagonal of the bounding box */
+    double *edges, *shortest;  /* components: sum of all edge lengths, and the least */
     float *radius;             /* ncorner: distance from the centre */
 } sl_cells;
 
@@ -83,9 +84,10 @@ static inline int32_t sl_cells_corners(const sl_cells *c, int32_t component)
 bool sl_symmetry_walk(const sl_cells *cells, int32_t from, int32_t to, bool reverses, int32_t limit, float tolerance,
                       int32_t *image, float *worst, int64_t *work);
 
-/* Where the map sends every corner of the first `limit` cells of `from`, the isometry that fits best. */
-void sl_symmetry_fit(const sl_cells *cells, int32_t from, int32_t to, int32_t limit, bool reverses,
-                     const int32_t *image, double isometry[12]);
+/* The isometry that fits a walk of the first `limit` cells of `from` best; returns the largest distance of a moved
+ * corner to its image. */
+double sl_symmetry_fit(const sl_cells *cells, int32_t from, int32_t to, int32_t limit, bool reverses,
+                       const int32_t *image, double isometry[12]);
 
 /* Geometry of a whole map: misfit, deviation, isometry, kind; and order. */
 void sl_symmetry_measure(const sl_cells *cells, const sl_symmetry_def *def, const int32_t *image, sl_symmetry_map *map);
