@@ -48,8 +48,9 @@ static void bolt_point(const void *data, double u, double v, double p[3])
     (void)data;
     const int32_t stations = THREADS * PER_THREAD + NECK_STEPS + UNDER_STEPS + HEAD_STEPS;
     const double at = v * stations;
-    const int32_t i = at >= stations ? stations - 1 : (int32_t)at;
-    double r[2], y[2], share[2], c = at - i;
+    const int32_t i = at >= stations ? stations - 1 : (int32_t)(at + 1e-6);
+    const double c = at - i < 1e-6 ? 0.0 : at - i; /* flat sides stay flat to the bit */
+    double r[2], y[2], share[2];
     station(i, &r[0], &y[0], &share[0]);
     station(i + 1, &r[1], &y[1], &share[1]);
     const double here = (1.0 - c) * hexagon(u, r[0], share[0]) + c * hexagon(u, r[1], share[1]);

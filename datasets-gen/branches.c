@@ -82,9 +82,9 @@ static void aim(double turn, double rise, double direction[3])
 /* A bough from one of the four quads on top of the trunk; subdivided later, its end splits into two twigs. */
 static void add_bough(gen_cage *cage, sl_rng *rng, int which, double top, double tip[3], branch *b)
 {
-    const double turn = (which + 0.5) * 1.5707963 + between(rng, -0.25, 0.25);
+    const double turn = (which + 0.5) * 1.5707963 + between(rng, -0.15, 0.15);
     const int32_t quad = gen_cage_nearest(cage, 0.3 * cos(turn), top, 0.3 * sin(turn));
-    aim(turn, between(rng, 0.45, 0.95), b->direction);
+    aim(turn, between(rng, 0.45, 0.80), b->direction);
     for (int k = 0; k < 3; k++) {
         b->base[k] = (k == 1 ? top : 0.0) + (k == 1 ? 0.0 : 0.25 * b->direction[k]);
     }
@@ -134,9 +134,9 @@ static void add_twigs(gen_cage *cage, sl_rng *rng, const branch *bough, const do
         const double sign = k == 0 ? 1.0 : -1.0;
         branch b = {.length = between(rng, 0.9, 1.6), .radius = between(rng, 0.15, 0.19), .stations = 3 + k};
         double end[3];
-        aim(turn + sign * between(rng, 0.45, 0.75), rise + between(rng, -0.25, 0.35), b.direction);
+        aim(turn + sign * between(rng, 0.30, 0.52), rise + between(rng, -0.15, 0.20), b.direction);
         for (int i = 0; i < 3; i++) {
-            b.base[i] = tip[i] + 0.05 * bough->direction[i] + 0.10 * sign * aside[i];
+            b.base[i] = tip[i] + 0.08 * bough->direction[i] + 0.12 * sign * aside[i];
         }
         grow(cage, pair[k], 2, &b, end);
     }

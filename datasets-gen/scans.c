@@ -139,6 +139,6 @@ sl_status gen_bust(uint64_t seed, int32_t scale, sl_generated **out)
     sl_generated_free(smooth);
     gen_split_quads(&b, &rng);
     gen_flip_edges(&b, &rng, 3);
-    gen_add_noise(&b, &rng, 0.12);
+    gen_add_noise(&b, &rng, 0.09);
     return gen_finish(&b, out);
 }

@@ -33,11 +33,14 @@ static double volume(const double *a, const double *b, const double *c, const do
     return sl_vec3_dot(n, w);
 }
 
+/* Rounding of a volume where coordinates are at most 1: coplanar neighbours do not pierce one another. */
+static const double rounding = 64 * 0x1p-52;
+
 /* Does the open segment pq pass through the inside of triangle abc? */
 static bool pierces(const double *p, const double *q, const double *a, const double *b, const double *c)
 {
     const double above = volume(a, b, c, p), below = volume(a, b, c, q);
-    if (!((above > 0.0 && below < 0.0) || (above < 0.0 && below > 0.0))) {
+    if (!((above > rounding && below < -rounding) || (above < -rounding && below > rounding))) {
         return false;
     }
     const double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
