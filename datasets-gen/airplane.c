@@ -19,13 +19,14 @@ static void add_fuselage(gen_cage *cage)
     static const double ahead[2][3] = {{0.4, -0.4, 1.8}, {0.4, 0.4, 1.8}};
     static const double behind[2][3] = {{0.4, -0.4, -1.2}, {0.4, 0.4, -1.2}};
     gen_cage_box(cage, (const int32_t[]){1, 2, 3}, (const double *const[]){x, y, z});
-    for (int64_t v = 0; v < cage->nv && !cage->failed; v++) { /* eight corners on a circle */
+    const int64_t middle = cage->nv;
+    gen_grow(cage, ahead, 2, side_x, front, (int32_t)SL_COUNTOF(front));
+    gen_grow(cage, behind, 2, side_x, back, (int32_t)SL_COUNTOF(back));
+    for (int64_t v = 0; v < middle && !cage->failed; v++) { /* eight corners on a circle */
         double *p = cage->xyz + 3 * v;
         p[0] *= p[1] == 0.0 ? 1.03 / 0.75 : 1.0;
         p[1] *= p[0] == 0.0 ? 1.03 / 0.75 : 1.0;
     }
-    gen_grow(cage, ahead, 2, side_x, front, (int32_t)SL_COUNTOF(front));
-    gen_grow(cage, behind, 2, side_x, back, (int32_t)SL_COUNTOF(back));
 }
 
 static void add_wing(gen_cage *cage)

@@ -29,7 +29,9 @@ static void add_head(gen_cage *cage)
     };
     static const double top[4][3] = {{0.12, 1.75, 0.5}, {0.12, 1.75, -0.5}, {0.8, 1.75, 0.5}, {0.8, 1.75, -0.5}};
     gen_cage_box(cage, (const int32_t[]){2, 1, 2}, (const double *const[]){x, y, z});
-    for (int64_t v = 0; v < cage->nv && !cage->failed; v++) {
+    const int64_t base = cage->nv;
+    gen_grow(cage, top, 4, (const double[]){1.0, 0.0, 0.0}, mantle, (int32_t)SL_COUNTOF(mantle));
+    for (int64_t v = 0; v < base && !cage->failed; v++) {
         double *p = cage->xyz + 3 * v;
         const double angle = atan2(p[0], p[2]), r = p[1] > 1.0 ? 1.55 : 1.75;
         if (p[0] != 0.0 || p[2] != 0.0) {
@@ -37,7 +39,6 @@ static void add_head(gen_cage *cage)
             p[2] = r * cos(angle);
         }
     }
-    gen_grow(cage, top, 4, (const double[]){1.0, 0.0, 0.0}, mantle, (int32_t)SL_COUNTOF(mantle));
     gen_bump(cage, (const double[]){1.2, 3.35, 0.6}, (const double[]){1.0, 0.3, 0.8}, 0.45);
 }
 

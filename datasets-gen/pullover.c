@@ -42,23 +42,31 @@ static void add_sleeve(gen_cage *cage)
 static void add_collar(gen_cage *cage)
 {
     static const gen_station collar[] = {
-        {{0.0, 7.55, 0.06}, 1.05, 0.78}, {{0.0, 7.95, 0.04}, 0.98, 0.80}, {{0.0, 8.40, 0.02}, 1.02, 0.86}};
+        {{0.0, 7.50, 0.00}, 1.12, 0.66}, {{0.0, 7.85, 0.00}, 1.08, 0.74}, {{0.0, 8.35, 0.02}, 1.12, 0.82}};
     static const double neck[4][3] = {{0.1, 7.3, -0.3}, {0.1, 7.3, 0.3}, {0.6, 7.3, -0.3}, {0.6, 7.3, 0.3}};
     static const double rim[4][3] = {{0.1, 8.4, -0.3}, {0.1, 8.4, 0.3}, {0.6, 8.4, -0.3}, {0.6, 8.4, 0.3}};
     gen_grow(cage, neck, 4, side_x, collar, (int32_t)SL_COUNTOF(collar));
     gen_open(cage, rim, 4);
 }
 
+/* A hem that turns in to a ribbed band. */
 static void add_waistband(gen_cage *cage)
 {
-    static const gen_station band[] = {
-        {{0.0, 0.72, 0.00}, 2.36, 1.46}, {{0.0, 0.50, 0.00}, 2.16, 1.28}, {{0.0, -0.15, 0.00}, 2.16, 1.28}};
-    static const double hem[6][3] = {{0.1, 1.1, -0.6}, {0.1, 1.1, 0.6},  {0.7, 1.1, -0.6},
-                                     {0.7, 1.1, 0.6},  {1.6, 1.1, -0.4}, {1.6, 1.1, 0.4}};
-    static const double rim[6][3] = {{0.1, -0.1, -0.6}, {0.1, -0.1, 0.6},  {0.7, -0.1, -0.6},
-                                     {0.7, -0.1, 0.6},  {1.5, -0.1, -0.4}, {1.5, -0.1, 0.4}};
-    gen_grow(cage, hem, 6, side_x, band, (int32_t)SL_COUNTOF(band));
-    gen_open(cage, rim, 6);
+    static const double side[6][2] = {{0.1, -0.6}, {0.1, 0.6}, {0.7, -0.6}, {0.7, 0.6}, {1.6, -0.4}, {1.6, 0.4}};
+    static const double level[4] = {1.1, 0.62, 0.42, -0.2}, girth[3] = {1.02, 0.90, 1.0};
+    double at[4][6][3];
+    for (int k = 0; k < 4; k++) {
+        for (int i = 0; i < 6; i++) {
+            at[k][i][0] = side[i][0];
+            at[k][i][1] = level[k];
+            at[k][i][2] = side[i][1];
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        gen_push(cage, (const double(*)[3])at[k], 6, (const double[]){0.0, level[k + 1] - level[k], 0.0},
+                 (const double[]){girth[k], 1.0, girth[k]});
+    }
+    gen_open(cage, (const double(*)[3])at[3], 6);
 }
 
 sl_status gen_pullover(uint64_t seed, int32_t scale, sl_generated **out)

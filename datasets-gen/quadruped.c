@@ -63,5 +63,6 @@ sl_status gen_quadruped(uint64_t seed, int32_t scale, sl_generated **out)
     add_trunk(&cage);
     add_legs(&cage);
     add_ears(&cage);
+    gen_bump(&cage, (const double[]){0.6, 8.15, 5.85}, (const double[]){1.0, 0.55, 0.55}, 0.15);
     return gen_finish_mirrored(&cage, 1 + scale, out);
 }
