@@ -128,8 +128,8 @@ static void enter(axis_search *s, axis candidate)
     }
 }
 
-/* Exact also where a rigid motion carries every corner onto its image as nearly as the edge lengths of large facets must
- * agree: coordinates written with six decimals leave short edges no more than that. */
+/* Exact also where a rigid motion carries every corner onto its image as nearly as the edge lengths of large facets
+ * must agree: coordinates written with six decimals leave short edges no more than that. */
 static bool is_exact(const sl_symmetry_map *map)
 {
     return map->kind == SL_SYMMETRY_EXACT ||

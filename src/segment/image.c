@@ -35,7 +35,21 @@ static bool is_copy(const images *s, int32_t f)
     return s->sharing->from[s->mesh->face_first[f]] >= 0;
 }
 
-/* UVs and owners of the facets that have charts. */
+/* UVs of the facets that have charts. */
+static void take_uvs(images *s)
+{
+    for (int64_t k = 0; k < s->done->count; k++) {
+        const sl_chart_job *job = &s->done->job[k];
+        const double *uv = job->corner_uv;
+        for (int32_t i = 0; i < job->count; i++) {
+            const int32_t f = job->face[i], degree = sl_degree(s->mesh, f);
+            memcpy(s->uv + 2 * (int64_t)s->mesh->face_first[f], uv, 2 * (size_t)degree * sizeof *uv);
+            uv += 2 * degree;
+        }
+    }
+}
+
+/* Owners of the facets that have charts. */
 static sl_status images_create(images *s)
 {
     const sl_mesh *m = s->mesh;
@@ -49,13 +63,8 @@ static sl_status images_create(images *s)
     }
     memset(s->owner, 0xff, (size_t)m->nf * sizeof *s->owner);
     for (int64_t k = 0; k < s->done->count; k++) {
-        const sl_chart_job *job = &s->done->job[k];
-        const double *uv = job->corner_uv;
-        for (int32_t i = 0; i < job->count; i++) {
-            const int32_t f = job->face[i];
-            s->owner[f] = (int32_t)k;
-            memcpy(s->uv + 2 * (int64_t)m->face_first[f], uv, 2 * (size_t)sl_degree(m, f) * sizeof *uv);
-            uv += 2 * sl_degree(m, f);
+        for (int32_t i = 0; i < s->done->job[k].count; i++) {
+            s->owner[s->done->job[k].face[i]] = (int32_t)k;
         }
     }
     return SL_OK;
@@ -81,7 +90,81 @@ static void follow_links(images *s, int32_t f)
         }
         s->near[f] |= near;
         s->owner[f] = s->owner[f] == owner && s->mirrored[f] == mirrored ? owner : -1;
-        memcpy(s->uv + 2 * (int64_t)c, s->uv + 2 * (int64_t)root, 2 * sizeof *s->uv);
+    }
+}
+
+/* Every done chart makes room for its images. */
+typedef struct room_job {
+    images *s;
+    int32_t *first, *facet; /* done->count + 1; facets that copy, by owner */
+    sl_status *status;      /* done->count */
+} room_job;
+
+static void make_room(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const room_job *job = user;
+    sl_recursion r = *job->s->recursion;
+    r.mesh = job->s->work;
+    for (int64_t k = begin; k < end; k++) {
+        const sl_images_of of = {.facet = job->facet + job->first[k],
+                                 .count = job->first[k + 1] - job->first[k],
+                                 .from = job->s->sharing->from,
+                                 .mirrored = job->s->mirrored};
+        job->status[k] = sl_unfold_images(&r, &of, &job->s->done->job[k]);
+    }
+}
+
+/* Facets that copy by the chart they copy. */
+static void sort_by_owner(const images *s, room_job *job)
+{
+    for (int32_t f = 0; f < s->mesh->nf; f++) {
+        if (is_copy(s, f) && s->owner[f] >= 0) {
+            job->first[s->owner[f] + 2]++;
+        }
+    }
+    for (int64_t k = 0; k < s->done->count; k++) {
+        job->first[k + 2] += job->first[k + 1];
+    }
+    for (int32_t f = 0; f < s->mesh->nf; f++) {
+        if (is_copy(s, f) && s->owner[f] >= 0) {
+            job->facet[job->first[s->owner[f] + 1]++] = f;
+        }
+    }
+}
+
+static sl_status unfold_all(images *s, const sl_context *context)
+{
+    sl_status status = SL_OK;
+    const int64_t n = s->done->count;
+    room_job job = {.s = s,
+                    .first = sl_calloc(n + 2, sizeof *job.first),
+                    .facet = sl_alloc(s->mesh->nf, sizeof *job.facet),
+                    .status = sl_calloc(n, sizeof *job.status)};
+    if (job.first == NULL || job.facet == NULL || job.status == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    sort_by_owner(s, &job);
+    sl_parallel_for(context, n, 1, make_room, &job);
+    for (int64_t k = 0; k < n; k++) {
+        SL_TRY(job.status[k]);
+    }
+cleanup:
+    sl_free(job.first);
+    sl_free(job.facet);
+    sl_free(job.status);
+    return status;
+}
+
+/* The copies' UVs, when those of the charts are final. */
+static void copy_uvs(images *s)
+{
+    const int32_t *from = s->sharing->from;
+    take_uvs(s);
+    for (int32_t c = 0; c < s->mesh->nh; c++) {
+        if (from[c] >= 0) {
+            memcpy(s->uv + 2 * (int64_t)c, s->uv + 2 * (int64_t)from[c], 2 * sizeof *s->uv);
+        }
     }
 }
 
@@ -319,6 +402,8 @@ sl_status sl_sharing_resolve(sl_sharing *sharing, const sl_recursion *recursion,
         }
     }
     shorten_links(&s);
+    SL_TRY(unfold_all(&s, context));
+    copy_uvs(&s);
     cut_images(&s);
     SL_TRY(sl_mesh_components(work, s.label, &components));
     SL_TRY(gather_jobs(&s, components));

@@ -40,6 +40,16 @@ SL_NODISCARD sl_status sl_sharing_add(sl_sharing *sharing, const sl_mesh *mesh, 
 SL_NODISCARD sl_status sl_share_components(const sl_mesh *mesh, const int32_t *partner, const sl_segment_def *def,
                                            const sl_context *context, sl_job_list *jobs, sl_sharing *sharing);
 
+/* The facets that copy those of one chart. */
+typedef struct sl_images_of {
+    const int32_t *facet; /* count */
+    int32_t count;
+    const int32_t *from;     /* nh: corner of the chart that a corner of those facets copies */
+    const uint8_t *mirrored; /* nf */
+} sl_images_of;
+
+SL_NODISCARD sl_status sl_unfold_images(const sl_recursion *recursion, const sl_images_of *images, sl_chart_job *job);
+
 /* Charts of the facets that copy, when all others are done: work's edges are cut where the source's are, UVs taken
  * over, each chart judged on its own geometry. What is not valid goes to refused, its facets copying nothing any more,
  * its inner edges sewn. def->unshare: copies become charts of their own. Appends to done. SL_OUT_OF_MEMORY,

@@ -4,7 +4,10 @@
  *     twice at 4096^2 (measure, chart by chart); the worst chart within the stretch asked for, or named by a warning;
  *     the same bytes for every number of threads given, UVs and sidecar, and again as read back from the file
  *
- *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [FOLDER|FILE ...]
+ *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [--symmetry off|auto|both] [FOLDER|FILE ...]
+ *
+ * Every mesh twice (--symmetry both, the default): without sharing, no overlap at all; with what symmetry allows, none
+ * that the sidecar, as read back, does not declare.
  *
  * A line a mesh; the last line is "N passed, N failed". */
 #define _POSIX_C_SOURCE 200809L
@@ -27,6 +30,7 @@ enum { MAX_THREAD_COUNTS = 8, MAX_MESHES = 512, OVERLAP_RESOLUTION = 4096 };
 
 typedef struct corpus_options {
     int32_t threads[MAX_THREAD_COUNTS], thread_counts, runs;
+    bool off, automatic;
     char scratch[512];
 } corpus_options;
 
@@ -89,11 +93,36 @@ static bool stretch_within_bound(const sl_atlas *atlas, double bound, char *why,
     return true;
 }
 
-static bool measures_well(const sl_polygons *polygons, const sl_atlas *atlas, const sl_context *context,
-                          sl_atlas_measure *m, char *why, size_t size)
+/* What the sidecar says of sharing, by way of a file. */
+static sl_status reread_sharing(const corpus_options *o, const sl_atlas *atlas, const sl_atlas_def *def,
+                                sl_sharing_table *table, sl_diag *diag)
+{
+    char path[600];
+    snprintf(path, sizeof path, "%s/out.atlas.json", o->scratch);
+    sl_status status = sl_sidecar_write(path, atlas, def, diag);
+    if (status == SL_OK) {
+        status = sl_sidecar_read(path, atlas->mesh->nf, table, diag);
+    }
+    unlink(path);
+    return status;
+}
+
+static bool measures_well(const corpus_options *o, const sl_polygons *polygons, const sl_atlas *atlas,
+                          const sl_atlas_def *def, const sl_context *context, sl_atlas_measure *m, char *why,
+                          size_t size)
 {
     sl_diag diag = sl_diag_none();
-    const sl_status status = sl_measure_atlas(polygons, atlas->input_corner_uv, OVERLAP_RESOLUTION, context, m, &diag);
+    sl_sharing_table table = {0};
+    sl_status status = SL_OK;
+    const bool shares = def->segment.symmetry != SL_SYMMETRY_USE_OFF;
+    if (shares) {
+        status = reread_sharing(o, atlas, def, &table, &diag);
+    }
+    if (status == SL_OK) {
+        status = sl_measure_shared(polygons, atlas->input_corner_uv, shares ? &table : NULL, OVERLAP_RESOLUTION,
+                                   context, m, &diag);
+    }
+    sl_sharing_table_clear(&table);
     if (status != SL_OK) {
         return bad(why, size, "measure: %s %s", sl_status_name(status), diag.reason);
     }
@@ -101,19 +130,23 @@ static bool measures_well(const sl_polygons *polygons, const sl_atlas *atlas, co
         return bad(why, size, "%d flipped, overlap %g inside, %g across", m->global.flipped, m->overlap_inside,
                    m->overlap_across);
     }
+    if (m->copies != atlas->segmentation->sharing.copies || (m->copies > 0) != (m->shared > 0.0)) {
+        return bad(why, size, "%d copies measured, %d made", m->copies, atlas->segmentation->sharing.copies);
+    }
     return true;
 }
 
 /* judged: look at the result closely; a later run need only give the same bytes. */
-static bool unwrap_once(const sl_polygons *polygons, int32_t threads, bool judged, run_result *result, char *why,
-                        size_t size)
+static bool unwrap_once(const corpus_options *o, const sl_polygons *polygons, sl_symmetry_use symmetry, int32_t threads,
+                        bool judged, run_result *result, char *why, size_t size)
 {
-    const sl_atlas_def def = sl_atlas_default();
+    sl_atlas_def def = sl_atlas_default();
     sl_diag diag = sl_diag_none();
     sl_thread_pool *pool = NULL;
     sl_atlas *atlas = NULL;
     sl_atlas_measure m = {0};
     bool good = false;
+    def.segment.symmetry = symmetry;
     if (sl_thread_pool_create(threads, &pool) != SL_OK) {
         return bad(why, size, "no threads");
     }
@@ -128,14 +161,14 @@ static bool unwrap_once(const sl_polygons *polygons, int32_t threads, bool judge
             atlas->check.degenerate, atlas->check.uncertified_charts, (long long)atlas->check.overlapping_texels);
     } else if (!judged || (charts_partition_facets(atlas, why, size) &&
                            stretch_within_bound(atlas, def.segment.flatten.max_stretch, why, size) &&
-                           measures_well(polygons, atlas, &context, &m, why, size))) {
+                           measures_well(o, polygons, atlas, &def, &context, &m, why, size))) {
         result->charts = atlas->segmentation->nchart;
         result->uv = sl_copy(atlas->input_corner_uv, atlas->mesh->nh, 2 * sizeof *result->uv);
         status = sl_sidecar_text(atlas, &def, &result->sidecar);
         good = result->uv != NULL && status == SL_OK;
-        snprintf(why, size, "%4d charts  seams %6.2f  L2 %.3f worst %.3f  fill %.3f  %5.1f s%s", m.charts,
+        snprintf(why, size, "%4d charts  seams %6.2f  L2 %.3f worst %.3f  fill %.3f  %5.1f s  saved %.3f%s", m.charts,
                  m.seam_diagonal, m.chart_l2_mean, m.chart_l2_worst, m.fill, result->seconds,
-                 atlas->nwarning > 0 ? "  (warned)" : "");
+                 atlas->segmentation->sharing.area, atlas->nwarning > 0 ? "  (warned)" : "");
     }
     sl_atlas_free(atlas);
     sl_thread_pool_free(pool);
@@ -158,14 +191,15 @@ static bool survives_the_file(const corpus_options *o, const sl_meshfile *file, 
     return good || bad(why, size, "UVs did not survive %s: %s", path, diag.reason);
 }
 
-static bool check_mesh(const corpus_options *o, const char *name, const sl_polygons *polygons, const sl_meshfile *file)
+static bool check_use(const corpus_options *o, const char *name, const sl_polygons *polygons, const sl_meshfile *file,
+                      sl_symmetry_use symmetry)
 {
     char why[256] = "", later[256];
     run_result first = {0};
-    bool good = unwrap_once(polygons, o->threads[0], true, &first, why, sizeof why);
+    bool good = unwrap_once(o, polygons, symmetry, o->threads[0], true, &first, why, sizeof why);
     for (int32_t r = 1; good && r < o->runs * o->thread_counts; r++) {
         run_result again = {0};
-        good = unwrap_once(polygons, o->threads[r % o->thread_counts], false, &again, later, sizeof later);
+        good = unwrap_once(o, polygons, symmetry, o->threads[r % o->thread_counts], false, &again, later, sizeof later);
         if (!good) {
             bad(why, sizeof why, "%s", later);
         } else if (memcmp(first.uv, again.uv, 2 * (size_t)polygons->face_first[polygons->nf] * sizeof *first.uv) != 0 ||
@@ -176,11 +210,19 @@ static bool check_mesh(const corpus_options *o, const char *name, const sl_polyg
         sl_free(again.sidecar);
     }
     good = good && (file == NULL || survives_the_file(o, file, first.uv, why, sizeof why));
-    printf("%-7s %-16s %8d facets  %s\n", good ? "ok" : "FAILED", name, polygons->nf, why);
+    printf("%-7s %-16s %-4s %8d facets  %s\n", good ? "ok" : "FAILED", name,
+           symmetry == SL_SYMMETRY_USE_OFF ? "off" : "auto", polygons->nf, why);
     fflush(stdout);
     sl_free(first.uv);
     sl_free(first.sidecar);
     return good;
+}
+
+static bool check_mesh(const corpus_options *o, const char *name, const sl_polygons *polygons, const sl_meshfile *file)
+{
+    const bool off = !o->off || check_use(o, name, polygons, file, SL_SYMMETRY_USE_OFF);
+    const bool automatic = !o->automatic || check_use(o, name, polygons, file, SL_SYMMETRY_USE_AUTO);
+    return off && automatic;
 }
 
 static bool check_file(const corpus_options *o, const char *path)
@@ -258,7 +300,7 @@ static void parse_threads(corpus_options *o, const char *text)
 
 int main(int argc, char **argv)
 {
-    corpus_options o = {.threads = {1}, .thread_counts = 1, .runs = 1};
+    corpus_options o = {.threads = {1}, .thread_counts = 1, .runs = 1, .off = true, .automatic = true};
     int32_t passed = 0, failed = 0;
     bool generated = false;
     const char *base = getenv("TMPDIR");
@@ -275,6 +317,9 @@ int main(int argc, char **argv)
             parse_threads(&o, argv[++a]);
         } else if (strcmp(argv[a], "--runs") == 0 && a + 1 < argc) {
             o.runs = atoi(argv[++a]);
+        } else if (strcmp(argv[a], "--symmetry") == 0 && a + 1 < argc) {
+            o.off = strcmp(argv[++a], "auto") != 0;
+            o.automatic = strcmp(argv[a], "off") != 0;
         }
     }
     int32_t generators = 0;
@@ -285,7 +330,7 @@ int main(int argc, char **argv)
         failed += !good;
     }
     for (int a = 1; a < argc; a++) {
-        if (strcmp(argv[a], "--threads") == 0 || strcmp(argv[a], "--runs") == 0) {
+        if (strcmp(argv[a], "--threads") == 0 || strcmp(argv[a], "--runs") == 0 || strcmp(argv[a], "--symmetry") == 0) {
             a++;
             continue;
         }
