@@ -70,11 +70,15 @@ static void a_push_at_the_mirror_plane_stays_in_it(void **state)
     const double at[4][3] = {{0.2, 0.9, -0.2}, {0.2, 0.9, 0.5}, {0.9, 0.9, -0.2}, {0.9, 0.9, 0.5}};
     sl_generated *mesh = NULL;
     gen_push(&cage, at, 4, (const double[]){0.3, 0.5, 0.2}, (const double[]){0.5, 0.5, 0.5});
-    int32_t in_plane = 0;
+    int32_t in_plane = 0, moved[2] = {0, 0};
     for (int64_t v = 0; v < cage.nv; v++) {
-        in_plane += cage.xyz[3 * v] == 0.0;
-        assert_true(cage.xyz[3 * v] >= 0.0);
+        const double x = cage.xyz[3 * v];
+        in_plane += x == 0.0;
+        for (int i = 0; i < 2; i++) { /* scaled about the plane, not about the half's own middle */
+            moved[i] += fabs(x - (0.5 * at_x[1 + i] + 0.3)) < 16 * TEST_EPS;
+        }
     }
+    assert_true(moved[0] == 3 && moved[1] == 3);
     assert_int_equal(in_plane, 8 + 2); /* the outline of two by two quads, and two ends doubled */
     assert_int_equal(gen_finish_mirrored(&cage, 2, &mesh), SL_OK);
     assert_int_equal(mesh->nplanted, 1);
@@ -182,6 +186,35 @@ static void bent_quads_are_split_and_flat_pairs_joined_alike_on_both_halves(void
     }
 }
 
+/* Bent at any of its four corners, the quad is split along the diagonal that is then the shorter one. */
+static void a_bent_quad_is_split_along_its_shorter_diagonal(void **state)
+{
+    (void)state;
+    for (int bent = 0; bent < 4; bent++) {
+        static const double square[4][2] = {{0.3, -0.5}, {0.3, 0.6}, {1.5, 0.7}, {1.4, -0.6}};
+        gen_cage cage = {.mirrored = true};
+        sl_generated *quads = NULL, *mesh = NULL;
+        for (int k = 0; k < 4; k++) {
+            gen_cage_vertex(&cage, (double[]){square[k][0], k == bent ? 0.8 : 0.0, square[k][1]});
+        }
+        gen_cage_quad(&cage, (int32_t[]){0, 1, 2, 3});
+        assert_int_equal(gen_cage_finish(&cage, 0, &quads), SL_OK);
+        assert_int_equal(gen_retile(quads, &mesh), SL_OK);
+        assert_int_equal(mesh->nf, 4);
+        for (int32_t half = 0; half < 2; half++) {
+            const int32_t *a = mesh->index + 6 * half, *b = a + 3; /* two triangles */
+            int32_t uses[4] = {0, 0, 0, 0};
+            for (int k = 0; k < 3; k++) {
+                uses[a[k] - 4 * half]++;
+                uses[b[k] - 4 * half]++;
+            }
+            const int other = (bent + 1) % 4; /* the bent corner's own diagonal has grown */
+            assert_true(uses[other] == 2 && uses[(other + 2) % 4] == 2);
+        }
+        sl_generated_free(mesh);
+    }
+}
+
 /* Sum over the facets of half the cross products of their sides: a facet's own, its halves' or its parts' alike. */
 static void vector_area(const sl_generated *mesh, double half_sign, double sum[3])
 {
@@ -236,6 +269,7 @@ int main(void)
         cmocka_unit_test(opening_drops_the_quads_and_the_vertices_only_they_had),
         cmocka_unit_test(a_bump_grows_from_the_quad_along_its_direction),
         cmocka_unit_test(bent_quads_are_split_and_flat_pairs_joined_alike_on_both_halves),
+        cmocka_unit_test(a_bent_quad_is_split_along_its_shorter_diagonal),
         cmocka_unit_test(tiling_anew_keeps_vertices_orientation_and_area),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
