@@ -127,7 +127,12 @@ int cli_fail(cli_run *run, sl_status status, const sl_diag *diag)
     if (diag != NULL && diag->reason[0] != '\0') {
         sl_diag_format(diag, text, sizeof text);
     }
-    fprintf(stderr, "seamlab %s: %s\n", run->verb, text[0] != '\0' ? text : sl_status_name(status));
+    /* Other limits give reasons of their own. */
+    const char *name = status == SL_LIMIT
+                           ? "more memory would be needed than --memory-limit allows; raise it, or ask for "
+                             "fewer --vectors"
+                           : sl_status_name(status);
+    fprintf(stderr, "seamlab %s: %s\n", run->verb, text[0] != '\0' ? text : name);
     return exit_code(status);
 }
 

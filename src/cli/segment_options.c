@@ -54,6 +54,8 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
         {"max-angle", 0, CLI_REAL, &o->def.flatten.max_angle, 1.0, 1e300, NULL, "R",
          "bound on a chart's mean s1/s2 (1.75)"},
         {"max-charts", 0, CLI_INT, &o->def.max_charts, 1, INT32_MAX, NULL, "N", "stop splitting there (100000)"},
+        {"memory-limit", 0, CLI_SIZE, &o->def.memory_limit, 1, 0x1p60, NULL, "SIZE",
+         "refuse (exit 6) eigenvectors that would need more, such as 2G"},
         {"energy", 0, CLI_CHOICE, &o->energy, 0, 0, "weighted|unweighted", NULL,
          "ABF++: 1/phi^2, or the paper's Eq. 1"},
         {"tutte", 0, CLI_ON_OFF, &o->def.flatten.tutte, 0, 0, NULL, NULL, "Tutte's embedding as last resort (on)"},

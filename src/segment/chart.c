@@ -182,6 +182,7 @@ void sl_chart_job_run(const sl_recursion *r, sl_chart_job *job)
     int32_t *partner = NULL;
     bool split = false;
     SL_TRY(sl_piece_create(r->mesh, r->triangulation, job->face, job->count, &piece));
+    piece->place = r->place;
     SL_TRY(local_partners(r, piece, &partner));
     if (job->depth == 0) {
         SL_TRY(split_by_symmetry(r, piece, partner, job, &split));

@@ -60,11 +60,73 @@ static sl_status build_graph(cut_search *s, const int32_t *partner)
     return status;
 }
 
+static bool has_places(const sl_piece *piece)
+{
+    bool all = piece->place != NULL;
+    for (int32_t f = 0; f < piece->mesh->nf && all; f++) {
+        all = piece->place[piece->face[f]] >= 0;
+    }
+    return all;
+}
+
+/* Ranks of the nodes where the piece is a part of one that was ordered; *rank = NULL otherwise. */
+static sl_status inherited_ranks(const cut_search *s, int32_t **rank)
+{
+    const sl_piece *piece = s->piece;
+    *rank = NULL;
+    if (!has_places(piece)) {
+        return SL_OK;
+    }
+    *rank = sl_alloc(s->graph->graph.n, sizeof **rank);
+    for (int32_t f = piece->mesh->nf - 1; f >= 0 && *rank != NULL; f--) {
+        (*rank)[s->graph->node[f]] = piece->place[piece->face[f]];
+    }
+    return *rank != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+}
+
+/* Leaves the order of elimination to the parts. */
+static sl_status bequeath(const cut_search *s)
+{
+    const sl_piece *piece = s->piece;
+    const int32_t n = s->graph->graph.n;
+    if (piece->place == NULL || s->spectrum->perm == NULL) {
+        return SL_OK;
+    }
+    int32_t *rank = sl_alloc(n, sizeof *rank);
+    if (rank == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t k = 0; k < n; k++) {
+        rank[s->spectrum->perm[k]] = k;
+    }
+    for (int32_t f = 0; f < piece->mesh->nf; f++) {
+        piece->place[piece->face[f]] = rank[s->graph->node[f]];
+    }
+    sl_free(rank);
+    return SL_OK;
+}
+
+static sl_status find_spectrum(cut_search *s)
+{
+    sl_spectrum_def def = sl_spectrum_default();
+    int32_t *rank = NULL;
+    sl_status status = SL_OK;
+    SL_TRY(inherited_ranks(s, &rank));
+    def.count = s->def->vectors < 2 ? 2 : s->def->vectors; /* the Fiedler vector at least */
+    def.mode = SL_LANCZOS_SIGNS;
+    def.memory_limit = s->def->memory_limit;
+    def.rank = rank;
+    SL_TRY(sl_spectrum_solve(s->graph, &def, s->context, &s->spectrum));
+    SL_TRY(rank == NULL ? bequeath(s) : SL_OK);
+cleanup:
+    sl_free(rank);
+    return status;
+}
+
 static sl_status find_candidates(cut_search *s)
 {
     sl_status status = SL_OK;
-    const int32_t wanted = s->def->vectors < 2 ? 2 : s->def->vectors; /* the Fiedler vector at least */
-    SL_TRY(sl_spectrum_compute_signs(s->graph, wanted, s->context, &s->spectrum));
+    SL_TRY(find_spectrum(s));
     s->candidates = sl_alloc(s->spectrum->count, sizeof *s->candidates);
     s->passing = sl_alloc(s->spectrum->count, sizeof *s->passing);
     if (s->candidates == NULL || s->passing == NULL) {

@@ -15,6 +15,7 @@ typedef struct run {
     sl_mesh *work;      /* a copy in which the seams are cut */
     uint8_t *first_cut; /* nh: marks of the first cuts and of axes */
     int32_t *partner;   /* nf, NULL = no pairing */
+    int32_t *place;     /* nf, see sl_piece */
     double paired_fraction;
     sl_job_list pending, done;
     sl_sharing sharing;
@@ -30,6 +31,7 @@ static void run_clear(run *r)
     sl_mesh_free(r->work);
     sl_free(r->first_cut);
     sl_free(r->partner);
+    sl_free(r->place);
     sl_sharing_clear(&r->sharing);
     sl_free(r->split);
     sl_job_list_clear(&r->pending);
@@ -153,6 +155,7 @@ static sl_status recurse(run *r)
                                         .def = r->def,
                                         .partner = r->partner,
                                         .share = r->share,
+                                        .place = r->place,
                                         .may_split = r->done.count + r->pending.count < r->def->max_charts};
         SL_TRY(sl_report_progress(r->context, "segment", (double)r->facets_done / r->mesh->nf));
         SL_TRY(sl_run_jobs(&recursion, r->context, sl_chart_job_run, &r->pending));
@@ -207,7 +210,12 @@ static sl_status run_create(sl_mesh *mesh, const sl_triangulation *triangulation
 {
     *r = (run){.mesh = mesh, .triangulation = triangulation, .def = def, .context = context};
     r->first_cut = sl_calloc(mesh->nh, sizeof *r->first_cut);
-    return r->first_cut == NULL ? SL_OUT_OF_MEMORY : sl_mesh_copy(mesh, &r->work);
+    r->place = sl_alloc(mesh->nf, sizeof *r->place);
+    if (r->first_cut == NULL || r->place == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    memset(r->place, -1, (size_t)mesh->nf * sizeof *r->place);
+    return sl_mesh_copy(mesh, &r->work);
 }
 
 /* Hands the result over; from here on nothing fails. */

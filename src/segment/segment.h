@@ -51,6 +51,7 @@ typedef struct sl_segment_def {
     bool protect_first; /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
     int32_t max_charts; /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
                            reported; default 100000 */
+    int64_t memory_limit; /* bytes that one eigensolve, its matrix and results may take; 0 = none; default 0 */
     sl_flatten_def flatten;
 } sl_segment_def;
 

@@ -12,7 +12,9 @@
 typedef struct sl_piece {
     sl_mesh *mesh;
     sl_triangulation *triangulation;
-    int32_t *face; /* mesh->nf: the parent's facet */
+    int32_t *face;  /* mesh->nf: the parent's facet */
+    int32_t *place; /* by the parent's facets: places in an order of elimination that parts inherit, -1 = none yet; each
+                       piece touches its own facets only; borrowed, NULL = none is kept */
 } sl_piece;
 
 /* The facets face[0 .. count - 1] (ascending) of a mesh; twins and seams inside the set are kept, others become
@@ -137,6 +139,7 @@ typedef struct sl_recursion {
     const sl_context *context; /* without progress where jobs run in parallel */
     bool may_split;            /* false: the cap is reached, flatten only */
     bool share;                /* look for symmetries */
+    int32_t *place;            /* nf, see sl_piece; nullable */
 } sl_recursion;
 
 /* Flattens a chart and, where that is not valid, splits it. The outcome, its status included, is in the job. */

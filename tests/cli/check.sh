@@ -181,6 +181,9 @@ expect 0 "$seamlab" spectrum $mesh --memory-limit 2G
 expect 6 "$seamlab" spectrum $mesh --memory-limit 100k -o limited.csv
 contains err.txt 'memory-limit'
 no_file limited.csv
+expect 6 "$seamlab" unwrap $mesh -o limited.obj --symmetry off --memory-limit 100k
+contains err.txt 'memory-limit'
+no_file limited.obj limited.atlas.json
 expect 2 "$seamlab" spectrum $mesh --signs --bands
 for option in '--tolerance 1e-15' '--tolerance 1' '--memory-limit 2X' '--memory-limit G' '--memory-limit -1G' '--memory-limit nan' '--bands=on'; do
     expect 2 "$seamlab" spectrum $mesh $option
