@@ -184,7 +184,7 @@ static sl_status take_band(run *r, const int32_t *index, int32_t expected)
     double *values = sl_alloc(2 * ((int64_t)expected + 1), sizeof *values);
     sl_status status = SL_OK;
     SL_TRY(values != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(sl_panels_create(r->n, expected, &X));
+    SL_TRY(sl_panels_create(r->n, expected, SL_DOUBLE, &X));
     sl_krylov_select(&r->krylov, index, expected);
     SL_TRY(sl_krylov_vectors(&r->krylov, expected, expected, &X));
     SL_TRY(sl_panels_rayleigh_ritz(&X, expected, &r->rows, r->norm, values, values + expected, r->context));
@@ -223,7 +223,7 @@ static sl_status try_band(run *r, double half, int32_t block, bool *done)
     }
     if (expected > 0) {
         SL_TRY(factor_at(r, &shift));
-        SL_TRY(sl_krylov_init(r->n, 0, block, basis, r->def->first.seed, r->context, &r->krylov));
+        SL_TRY(sl_krylov_init(r->n, 0, block, basis, SL_DOUBLE, r->def->first.seed, r->context, &r->krylov));
         index = sl_alloc(basis, sizeof *index);
         SL_TRY(index != NULL ? SL_OK : SL_OUT_OF_MEMORY);
         r->krylov.both_ends = true;

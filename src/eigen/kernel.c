@@ -149,6 +149,30 @@ MANY_TARGETS static void multiply4(const int64_t *first, const int32_t *col, con
     }
 }
 
+MANY_TARGETS static void widen(const float *restrict X, int64_t count, double *restrict Y)
+{
+    for (int64_t i = 0; i < count; i++) {
+        Y[i] = (double)X[i];
+    }
+}
+
+MANY_TARGETS static void narrow(const double *restrict X, int64_t count, float *restrict Y)
+{
+    for (int64_t i = 0; i < count; i++) {
+        Y[i] = (float)X[i];
+    }
+}
+
+void sl_kernel_widen(const float *X, int64_t count, double *Y)
+{
+    widen(X, count, Y);
+}
+
+void sl_kernel_narrow(const double *X, int64_t count, float *Y)
+{
+    narrow(X, count, Y);
+}
+
 void sl_kernel_gram(const double *P, const double *W, int64_t rows, int32_t w, double *H)
 {
     if (w == 8) {

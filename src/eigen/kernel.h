@@ -23,4 +23,8 @@ void sl_kernel_triangle(const double *U, int64_t rows, int32_t w, double *W);
 void sl_kernel_multiply(const int64_t *first, const int32_t *col, const double *val, double shift, const double *X,
                         int32_t w, int64_t begin, int64_t rows, double *Y);
 
+/* Y = X and back, rounded. */
+void sl_kernel_widen(const float *X, int64_t count, double *Y);
+void sl_kernel_narrow(const double *X, int64_t count, float *Y);
+
 #endif

@@ -15,23 +15,23 @@ static const double look_share = 0.8;
  * hardly magnified. */
 enum { look_back_every = 2 };
 
-int64_t sl_krylov_bytes(int64_t rows, int32_t fixed, int32_t block, int32_t max_basis)
+int64_t sl_krylov_bytes(int64_t rows, int32_t fixed, int32_t block, int32_t max_basis, sl_precision precision)
 {
     const int64_t m = max_basis + block, w = block < SL_PANEL ? block : SL_PANEL;
     const int64_t partial = sl_panels_partial_size(rows, fixed + (int32_t)m);
     const int64_t small = 4 * m * m + 40 * m + 4 * (m + fixed) * SL_PANEL + partial;
-    return sl_panels_bytes(rows, fixed + m) + (2 * rows * w + small) * (int64_t)sizeof(double);
+    return sl_panels_bytes(rows, fixed + m, precision) + (2 * rows * w + small) * (int64_t)sizeof(double);
 }
 
-sl_status sl_krylov_init(int32_t rows, int32_t fixed, int32_t block, int32_t max_basis, uint64_t seed,
-                         const sl_context *context, sl_krylov *k)
+sl_status sl_krylov_init(int32_t rows, int32_t fixed, int32_t block, int32_t max_basis, sl_precision precision,
+                         uint64_t seed, const sl_context *context, sl_krylov *k)
 {
     const int64_t m = (int64_t)max_basis + block, columns = fixed + m;
     const int64_t padded = (int64_t)sl_panel_count((int32_t)columns) * SL_PANEL;
     *k = (sl_krylov){.fixed = fixed, .block = block, .max_basis = max_basis, .context = context};
     k->w = block < SL_PANEL ? block : SL_PANEL;
     k->rng = sl_rng_seed(seed);
-    const sl_status status = sl_panels_create(rows, (int32_t)columns, &k->Q);
+    const sl_status status = sl_panels_create(rows, (int32_t)columns, precision, &k->Q);
     k->T = sl_calloc(m * m, sizeof *k->T);
     k->W = sl_alloc((int64_t)rows * k->w, sizeof *k->W);
     k->spare = sl_alloc((int64_t)rows * k->w, sizeof *k->spare);

@@ -193,7 +193,8 @@ static void judge(sl_lanczos *s)
     if (left <= (plain ? polish_patience : patience)) {
         return;
     }
-    s->stage = plain ? SL_STAGE_DONE : SL_STAGE_KRYLOV;
+    s->stage = plain && s->precision == SL_DOUBLE ? SL_STAGE_DONE : SL_STAGE_KRYLOV;
+    s->precision = plain ? SL_DOUBLE : s->precision;
     if (s->needed > s->wanted) { /* what holds it up may be the rest of a cluster alone */
         s->needed = s->wanted;
         if (sl_lanczos_worst(s) <= 1.0) {

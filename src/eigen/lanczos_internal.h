@@ -25,6 +25,7 @@ struct sl_lanczos {
     int32_t needed;     /* pairs that must converge: wanted, and the rest of a cluster it ends in */
     int32_t columns;    /* of X: wanted and guards */
     int32_t block, max_basis;
+    sl_precision precision; /* of the plain start's basis */
     double norm, sigma;
     const sl_csc *A;           /* borrowed */
     const sl_context *context; /* borrowed */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Rows a kernel is called with: eight lanes of them stay in the first cache. */
-static const int64_t tile_rows = 256;
+enum { TILE_ROWS = 256, TILE = TILE_ROWS * SL_PANEL };
 
 /* Rows of a chunk are a multiple of the tile, and there are at most so many chunks: their partial sums are added up in
  * order. */
@@ -17,8 +17,8 @@ static const size_t cache_line = 64;
 
 static int64_t chunk_rows(int64_t rows)
 {
-    const int64_t share = (rows + MAX_CHUNKS - 1) / MAX_CHUNKS, least = 16 * tile_rows;
-    return share <= least ? least : (share + tile_rows - 1) / tile_rows * tile_rows;
+    const int64_t share = (rows + MAX_CHUNKS - 1) / MAX_CHUNKS, least = 16 * TILE_ROWS;
+    return share <= least ? least : (share + TILE_ROWS - 1) / TILE_ROWS * TILE_ROWS;
 }
 
 static int64_t smaller(int64_t a, int64_t b)
@@ -26,20 +26,23 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-int64_t sl_panels_bytes(int64_t rows, int64_t columns)
+int64_t sl_panels_bytes(int64_t rows, int64_t columns, sl_precision precision)
 {
-    return (columns + SL_PANEL - 1) / SL_PANEL * SL_PANEL * rows * (int64_t)sizeof(double) + (int64_t)cache_line;
+    const int64_t entry = precision == SL_SINGLE ? sizeof(float) : sizeof(double);
+    return (columns + SL_PANEL - 1) / SL_PANEL * SL_PANEL * rows * entry + (int64_t)cache_line;
 }
 
-sl_status sl_panels_create(int32_t rows, int32_t columns, sl_panels *out)
+sl_status sl_panels_create(int32_t rows, int32_t columns, sl_precision precision, sl_panels *out)
 {
     *out = (sl_panels){.rows = rows, .columns = columns};
-    out->memory = sl_calloc(sl_panels_bytes(rows, columns), 1);
+    out->memory = sl_calloc(sl_panels_bytes(rows, columns, precision), 1);
     if (out->memory == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     const uintptr_t skip = (uintptr_t)out->memory % cache_line;
-    out->data = (double *)((char *)out->memory + (skip == 0 ? 0 : cache_line - skip));
+    void *start = (char *)out->memory + (skip == 0 ? 0 : cache_line - skip);
+    out->data = precision == SL_DOUBLE ? start : NULL;
+    out->single = precision == SL_SINGLE ? start : NULL;
     return SL_OK;
 }
 
@@ -51,16 +54,32 @@ void sl_panels_clear(sl_panels *panels)
 
 sl_status sl_panels_take(sl_panels *from, int32_t columns, sl_panels *to)
 {
-    const ptrdiff_t skip = (char *)from->data - (char *)from->memory;
-    void *memory = sl_realloc(from->memory, sl_panels_bytes(from->rows, columns), 1);
+    const sl_precision precision = from->single != NULL ? SL_SINGLE : SL_DOUBLE;
+    char *start = from->single != NULL ? (char *)from->single : (char *)from->data;
+    const ptrdiff_t skip = start - (char *)from->memory;
+    void *memory = sl_realloc(from->memory, sl_panels_bytes(from->rows, columns, precision), 1);
     *to = (sl_panels){.rows = 0};
     if (memory == NULL) {
         sl_panels_clear(from);
         return SL_OUT_OF_MEMORY;
     }
-    *to = (sl_panels){from->rows, columns, memory, (double *)(void *)((char *)memory + skip)};
+    *to = (sl_panels){.rows = from->rows, .columns = columns, .memory = memory};
+    void *data = (char *)memory + skip;
+    to->data = precision == SL_DOUBLE ? data : NULL;
+    to->single = precision == SL_SINGLE ? data : NULL;
     *from = (sl_panels){.rows = 0};
     return SL_OK;
+}
+
+/* `rows` rows of a panel from `begin` on, by way of wide (TILE) where they are single. */
+static const double *tile_of(const sl_panels *M, int32_t panel, int64_t begin, int64_t rows, double *wide)
+{
+    const int64_t at = (panel * (int64_t)M->rows + begin) * SL_PANEL;
+    if (M->single == NULL) {
+        return M->data + at;
+    }
+    sl_kernel_widen(M->single + at, rows * SL_PANEL, wide);
+    return wide;
 }
 
 int64_t sl_panels_partial_size(int64_t rows, int32_t columns)
@@ -97,10 +116,11 @@ static void project_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     const int64_t block = (int64_t)SL_PANEL * s->w, half = s->panels * block;
     double *H = s->partial + chunk * s->stride;
     memset(H, 0, (size_t)s->stride * sizeof *H);
-    for (int64_t r = begin; r < end; r += tile_rows) {
-        const int64_t rows = smaller(tile_rows, end - r);
+    double wide[TILE];
+    for (int64_t r = begin; r < end; r += TILE_ROWS) {
+        const int64_t rows = smaller(TILE_ROWS, end - r);
         for (int32_t p = 0; p < s->panels; p++) {
-            const double *P = sl_panel_at(s->M, p) + r * SL_PANEL;
+            const double *P = tile_of(s->M, p, r, rows, wide);
             sl_kernel_gram(P, s->W[0] + r * s->w, rows, s->w, H + p * block);
             if (s->W[1] != NULL) {
                 sl_kernel_gram(P, s->W[1] + r * s->w, rows, s->w, H + half + p * block);
@@ -130,10 +150,11 @@ static void subtract_chunk(void *user, int64_t begin, int64_t end, int32_t chunk
     const int64_t block = (int64_t)SL_PANEL * s->w;
     double *G = s->partial + chunk * s->stride;
     memset(G, 0, (size_t)s->stride * sizeof *G);
-    for (int64_t r = begin; r < end; r += tile_rows) {
-        const int64_t rows = smaller(tile_rows, end - r);
+    double wide[TILE];
+    for (int64_t r = begin; r < end; r += TILE_ROWS) {
+        const int64_t rows = smaller(TILE_ROWS, end - r);
         for (int32_t p = 0; p < s->panels; p++) {
-            const double *P = sl_panel_at(s->M, p) + r * SL_PANEL;
+            const double *P = tile_of(s->M, p, r, rows, wide);
             sl_kernel_add(P, s->H[0] + p * block, rows, s->w, s->W[0] + r * s->w);
             if (s->W[1] != NULL) {
                 sl_kernel_add(P, s->H[1] + p * block, rows, s->w, s->W[1] + r * s->w);
@@ -173,8 +194,8 @@ static void divide_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     const sweep *s = user;
     double *G = s->partial + chunk * s->stride;
     memset(G, 0, (size_t)s->stride * sizeof *G);
-    for (int64_t r = begin; r < end; r += tile_rows) {
-        const int64_t rows = smaller(tile_rows, end - r);
+    for (int64_t r = begin; r < end; r += TILE_ROWS) {
+        const int64_t rows = smaller(TILE_ROWS, end - r);
         sl_kernel_triangle(s->H[0], rows, s->w, s->W[0] + r * s->w);
         sl_kernel_self(s->W[0] + r * s->w, rows, s->w, G);
     }
@@ -258,33 +279,52 @@ static int32_t first_part(int32_t at, int32_t w)
     return room < w ? room : w;
 }
 
+/* The lanes from `at` on of one panel, part of which are W's from `from` on. */
+static void store_lanes(sl_panels *M, int32_t panel, int32_t at, const double *W, int32_t w, int32_t from, int32_t part)
+{
+    const int64_t skip = (int64_t)panel * M->rows * SL_PANEL + at;
+    for (int64_t r = 0; r < M->rows && M->single == NULL; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            M->data[skip + r * SL_PANEL + c] = W[r * w + from + c];
+        }
+    }
+    for (int64_t r = 0; r < M->rows && M->single != NULL; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            M->single[skip + r * SL_PANEL + c] = (float)W[r * w + from + c];
+        }
+    }
+}
+
+static void load_lanes(const sl_panels *M, int32_t panel, int32_t at, double *W, int32_t w, int32_t from, int32_t part)
+{
+    const int64_t skip = (int64_t)panel * M->rows * SL_PANEL + at;
+    for (int64_t r = 0; r < M->rows && M->single == NULL; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            W[r * w + from + c] = M->data[skip + r * SL_PANEL + c];
+        }
+    }
+    for (int64_t r = 0; r < M->rows && M->single != NULL; r++) {
+        for (int32_t c = 0; c < part; c++) {
+            W[r * w + from + c] = (double)M->single[skip + r * SL_PANEL + c];
+        }
+    }
+}
+
 void sl_panels_store(sl_panels *M, int32_t at, const double *W, int32_t w)
 {
-    const int32_t part = first_part(at, w);
-    double *to = sl_panel_at(M, at / SL_PANEL) + at % SL_PANEL;
-    double *rest = part < w ? sl_panel_at(M, at / SL_PANEL + 1) - part : NULL;
-    for (int64_t r = 0; r < M->rows; r++) {
-        for (int32_t c = 0; c < part; c++) {
-            to[r * SL_PANEL + c] = W[r * w + c];
-        }
-        for (int32_t c = part; c < w; c++) {
-            rest[r * SL_PANEL + c] = W[r * w + c];
-        }
+    const int32_t part = first_part(at, w), panel = at / SL_PANEL;
+    store_lanes(M, panel, at % SL_PANEL, W, w, 0, part);
+    if (part < w) {
+        store_lanes(M, panel + 1, 0, W, w, part, w - part);
     }
 }
 
 void sl_panels_load(const sl_panels *M, int32_t at, double *W, int32_t w)
 {
-    const int32_t part = first_part(at, w);
-    const double *from = sl_panel_at(M, at / SL_PANEL) + at % SL_PANEL;
-    const double *rest = part < w ? sl_panel_at(M, at / SL_PANEL + 1) - part : NULL;
-    for (int64_t r = 0; r < M->rows; r++) {
-        for (int32_t c = 0; c < part; c++) {
-            W[r * w + c] = from[r * SL_PANEL + c];
-        }
-        for (int32_t c = part; c < w; c++) {
-            W[r * w + c] = rest[r * SL_PANEL + c];
-        }
+    const int32_t part = first_part(at, w), panel = at / SL_PANEL;
+    load_lanes(M, panel, at % SL_PANEL, W, w, 0, part);
+    if (part < w) {
+        load_lanes(M, panel + 1, 0, W, w, part, w - part);
     }
 }
 
@@ -300,20 +340,27 @@ typedef struct rotation {
 static void rotate_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
     const rotation *t = user;
-    const int64_t tile = tile_rows * SL_PANEL, block = SL_PANEL * SL_PANEL;
-    double *copy = t->tiles + chunk * tile * t->panels;
-    for (int64_t r = begin; r < end; r += tile_rows) {
-        const int64_t rows = smaller(tile_rows, end - r);
-        const size_t bytes = (size_t)(rows * SL_PANEL) * sizeof *copy;
+    const int64_t block = SL_PANEL * SL_PANEL;
+    double *copy = t->tiles + chunk * (int64_t)TILE * t->panels, turned[TILE];
+    for (int64_t r = begin; r < end; r += TILE_ROWS) {
+        const int64_t rows = smaller(TILE_ROWS, end - r), entries = rows * SL_PANEL;
         for (int32_t p = 0; p < t->panels; p++) {
-            memcpy(copy + p * tile, sl_panel_at(t->M, p) + r * SL_PANEL, bytes);
+            double *tile = copy + p * TILE;
+            const double *from = tile_of(t->M, p, r, rows, tile);
+            if (from != tile) {
+                memcpy(tile, from, (size_t)entries * sizeof *copy);
+            }
         }
         for (int32_t q = 0; q < t->kept_panels; q++) {
-            double *out = sl_panel_at(t->to, q) + r * SL_PANEL;
-            memset(out, 0, bytes);
+            const int64_t at = (q * (int64_t)t->to->rows + r) * SL_PANEL;
+            double *out = t->to->single != NULL ? turned : t->to->data + at;
+            memset(out, 0, (size_t)entries * sizeof *out);
             for (int32_t p = 0; p < t->panels; p++) {
-                sl_kernel_add(copy + p * tile, t->blocks + ((int64_t)p * t->kept_panels + q) * block, rows, SL_PANEL,
+                sl_kernel_add(copy + p * TILE, t->blocks + ((int64_t)p * t->kept_panels + q) * block, rows, SL_PANEL,
                               out);
+            }
+            if (t->to->single != NULL) {
+                sl_kernel_narrow(turned, entries, t->to->single + at);
             }
         }
     }
@@ -325,7 +372,7 @@ sl_status sl_panels_rotate(sl_panels *M, int32_t columns, const double *C, int32
     const int32_t panels = sl_panel_count(columns), kept_panels = sl_panel_count(kept);
     const int32_t chunks = sl_chunk_count(M->rows, chunk_rows(M->rows));
     double *blocks = sl_calloc((int64_t)panels * kept_panels, SL_PANEL * SL_PANEL * sizeof *blocks);
-    double *tiles = sl_alloc((int64_t)chunks * panels * tile_rows * SL_PANEL, sizeof *tiles);
+    double *tiles = sl_alloc((int64_t)chunks * panels * TILE, sizeof *tiles);
     sl_status status = SL_OUT_OF_MEMORY;
     if (blocks != NULL && tiles != NULL) {
         for (int32_t i = 0; i < columns; i++) {

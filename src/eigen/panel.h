@@ -13,12 +13,15 @@
  * last panel exist and are zero until written. */
 typedef struct sl_panels {
     int32_t rows, columns;
-    void *memory; /* owned */
-    double *data; /* memory, aligned to a cache line */
+    void *memory;  /* owned */
+    double *data;  /* memory, aligned to a cache line; NULL when entries are kept in single precision */
+    float *single; /* the same then; all arithmetic is in double precision nonetheless */
 } sl_panels;
 
+typedef enum sl_precision { SL_DOUBLE, SL_SINGLE } sl_precision;
+
 /* Zeroed. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_panels_create(int32_t rows, int32_t columns, sl_panels *out);
+SL_NODISCARD sl_status sl_panels_create(int32_t rows, int32_t columns, sl_precision precision, sl_panels *out);
 void sl_panels_clear(sl_panels *panels);
 
 /* *to = the first `columns` columns of *from, whose memory it takes over and shrinks; *from is empty afterwards, also
@@ -26,16 +29,27 @@ void sl_panels_clear(sl_panels *panels);
 SL_NODISCARD sl_status sl_panels_take(sl_panels *from, int32_t columns, sl_panels *to);
 
 /* Bytes sl_panels_create would take. */
-int64_t sl_panels_bytes(int64_t rows, int64_t columns);
+int64_t sl_panels_bytes(int64_t rows, int64_t columns, sl_precision precision);
 
 static inline int32_t sl_panel_count(int32_t columns)
 {
     return (columns + SL_PANEL - 1) / SL_PANEL;
 }
 
+/* Of double precision. */
 static inline double *sl_panel_at(const sl_panels *m, int32_t panel)
 {
     return m->data + (int64_t)panel * m->rows * SL_PANEL;
+}
+
+/* Panels panel .. of M, which keeps the memory, as columns of their own. */
+static inline sl_panels sl_panels_from(const sl_panels *M, int32_t panel)
+{
+    const int64_t skip = (int64_t)panel * M->rows * SL_PANEL;
+    return (sl_panels){.rows = M->rows,
+                       .columns = M->columns - panel * SL_PANEL,
+                       .data = M->data != NULL ? M->data + skip : NULL,
+                       .single = M->single != NULL ? M->single + skip : NULL};
 }
 
 /* Up to two blocks that go through a sweep over M together; the second costs little where memory sets the pace. W: rows
@@ -63,12 +77,12 @@ void sl_panel_remove(int32_t rows, const double *v, double *W, const sl_context 
 void sl_panels_divide(int32_t rows, double *W, int32_t w, const double *R, double *partial, double *G,
                       const sl_context *context);
 
-/* M := M C, or to = M C when `to` (as many rows, kept columns at least) is given. C: columns x kept, column-major.
- * Lanes from kept up to the next multiple of eight become 0. SL_OUT_OF_MEMORY. */
+/* M := M C, or to = M C when `to` (as many rows, kept columns at least, of any precision) is given. C: columns x kept,
+ * column-major. Lanes from kept up to the next multiple of eight become 0. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_panels_rotate(sl_panels *M, int32_t columns, const double *C, int32_t kept, sl_panels *to,
                                         const sl_context *context);
 
-/* Copies W (rows x w) to columns at .. at + w - 1 of M, or back. */
+/* Copies W (rows x w), rounded where M is single, to columns at .. at + w - 1 of M, or back. */
 void sl_panels_store(sl_panels *M, int32_t at, const double *W, int32_t w);
 void sl_panels_load(const sl_panels *M, int32_t at, double *W, int32_t w);
 

@@ -22,13 +22,6 @@
 /* A mode beyond is treated as if it were at least this far from lambda: |1 - lambda theta|. */
 static const double least_distance = 0.1;
 
-/* The pairs beyond those of X. */
-static sl_panels beyond(const sl_skeleton *k)
-{
-    const int32_t own = sl_panel_count(k->s->columns);
-    return (sl_panels){.rows = k->U.rows, .columns = k->modes - own * SL_PANEL, .data = sl_panel_at(&k->U, own)};
-}
-
 sl_status sl_skeleton_take_modes(sl_skeleton *k)
 {
     sl_krylov *b = &k->krylov;
@@ -45,10 +38,10 @@ sl_status sl_skeleton_take_modes(sl_skeleton *k)
     k->response = sl_alloc((int64_t)k->s->n * SL_PANEL, sizeof *k->response);
     SL_TRY(k->partial != NULL && k->H != NULL && k->response != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     for (int32_t p = 0; p < sl_panel_count(k->modes); p++) {
-        double *U = sl_panel_at(&k->U, p);
+        float *U = k->U.single + (int64_t)p * k->rows * SL_PANEL;
         for (int64_t i = 0; i < k->rows; i++) {
             for (int32_t c = 0; c < SL_PANEL; c++) {
-                U[i * SL_PANEL + c] /= k->root[i];
+                U[i * SL_PANEL + c] = (float)(U[i * SL_PANEL + c] / k->root[i]);
             }
         }
     }
@@ -72,7 +65,7 @@ static void misfit(const sl_skeleton *k, const double *u, const double *lambda, 
 static void solve_misfit(sl_skeleton *k, const double *lambda, double *t)
 {
     sl_lanczos *s = k->s;
-    const sl_panels far = beyond(k);
+    const sl_panels far = sl_panels_from(&k->U, sl_panel_count(s->columns)); /* the pairs beyond those of X */
     const sl_panel_pair single = {SL_PANEL, {t, NULL}, {k->H, NULL}};
     double G[SL_PANEL * SL_PANEL];
     const double *theta = k->theta + sl_panel_count(s->columns) * SL_PANEL;
@@ -103,7 +96,7 @@ void sl_skeleton_recover(sl_skeleton *k, int32_t p)
         lambda[c] = 1.0 / k->theta[p * SL_PANEL + c];
     }
     memset(X, 0, bottom_bytes);
-    memcpy(top, sl_panel_at(&k->U, p), top_bytes);
+    sl_panels_load(&k->U, p * SL_PANEL, top, SL_PANEL);
     sl_cholesky_backward_part(s->factor, SL_PART_BOTTOM, X, SL_PANEL, s->solve_work, s->context); /* T u */
     memcpy(g, X, bottom_bytes);
     memset(t, 0, top_bytes);

@@ -155,7 +155,8 @@ static sl_status find_modes(sl_skeleton *k, bool *usable)
     k->column = sl_alloc(s->n, sizeof *k->column);
     spare = sl_alloc(k->rows, sizeof *spare);
     SL_TRY(k->root != NULL && k->second != NULL && k->column != NULL && spare != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(sl_krylov_init(k->rows, s->null_count, SL_PANEL, s->max_basis, s->def.seed, s->context, &k->krylov));
+    SL_TRY(
+        sl_krylov_init(k->rows, s->null_count, SL_PANEL, s->max_basis, SL_SINGLE, s->def.seed, s->context, &k->krylov));
     *usable = condense_masses(k);
     if (*usable) {
         fix_null_space(k, spare);
@@ -196,7 +197,7 @@ sl_status sl_lanczos_skeleton(sl_lanczos *s, bool *usable)
     SL_TRY(find_modes(&k, usable));
     if (*usable) {
         SL_TRY(sl_skeleton_take_modes(&k));
-        SL_TRY(sl_panels_create(s->n, s->columns, &s->X));
+        SL_TRY(sl_panels_create(s->n, s->columns, SL_DOUBLE, &s->X));
         for (int32_t p = 0; p < panels; p++) {
             SL_TRY(sl_report_progress(s->context, "patches", (double)p / panels));
             sl_skeleton_recover(&k, p);

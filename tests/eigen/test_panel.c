@@ -70,10 +70,10 @@ enum { ROWS = 9001 };
 /* Of sums over all rows of products of numbers below 1. */
 static const double rounding = ROWS * TEST_EPS;
 
-static sl_panels random_panels(test_rng *rng, int32_t columns)
+static sl_panels random_panels(test_rng *rng, int32_t columns, sl_precision precision)
 {
     sl_panels M;
-    assert_int_equal(sl_panels_create(ROWS, columns, &M), SL_OK);
+    assert_int_equal(sl_panels_create(ROWS, columns, precision, &M), SL_OK);
     double *x = random_numbers(rng, (int64_t)ROWS * columns);
     for (int32_t k = 0; k < columns; k += 3) {
         sl_panels_store(&M, k, x + (int64_t)k * ROWS, columns - k < 3 ? columns - k : 3);
@@ -84,14 +84,15 @@ static sl_panels random_panels(test_rng *rng, int32_t columns)
 
 static double entry(const sl_panels *M, int64_t r, int32_t k)
 {
-    return sl_panel_at(M, k / SL_PANEL)[r * SL_PANEL + k % SL_PANEL];
+    const int64_t at = ((int64_t)(k / SL_PANEL) * M->rows + r) * SL_PANEL + k % SL_PANEL;
+    return M->single != NULL ? (double)M->single[at] : M->data[at];
 }
 
 static void blocks_are_stored_and_loaded_across_panels(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0x570e);
-    sl_panels M = random_panels(&rng, 21);
+    sl_panels M = random_panels(&rng, 21, SL_DOUBLE);
     double *W = random_numbers(&rng, 8 * ROWS), *V = random_numbers(&rng, 8 * ROWS);
     for (int32_t at = 0; at <= 13; at++) {
         const int32_t w = at % 2 == 0 ? 8 : 4;
@@ -111,13 +112,68 @@ static void blocks_are_stored_and_loaded_across_panels(void **state)
     sl_free(V);
 }
 
-/* After W -= Q (Q'W) against columns that are orthonormal nothing is left in them, whatever the number of workers. */
-static void projection_leaves_nothing_and_never_depends_on_workers(void **state)
+/* Stored in single precision entries come back rounded, and stay where they were when a part is taken over. */
+static void single_panels_round_what_is_stored(void **state)
 {
     (void)state;
+    test_rng rng = test_rng_seed(0x51961e);
+    sl_panels M, taken;
+    double *W = random_numbers(&rng, 8 * ROWS), *V = random_numbers(&rng, 8 * ROWS);
+    assert_int_equal(sl_panels_create(ROWS, 21, SL_SINGLE, &M), SL_OK);
+    assert_true(2 * sl_panels_bytes(ROWS, 21, SL_SINGLE) < sl_panels_bytes(ROWS, 21, SL_DOUBLE) + 128);
+    for (int32_t at = 0; at <= 13; at++) {
+        const int32_t w = at % 2 == 0 ? 8 : 4;
+        sl_panels_store(&M, at, W, w);
+        sl_panels_load(&M, at, V, w);
+        for (int64_t i = 0; i < (int64_t)w * ROWS; i++) {
+            assert_true(V[i] == (double)(float)W[i]);
+        }
+    }
+    const double kept = entry(&M, 123, 8);
+    const sl_panels rest = sl_panels_from(&M, 1);
+    assert_true(rest.columns == 13 && entry(&rest, 123, 0) == kept);
+    assert_int_equal(sl_panels_take(&M, 9, &taken), SL_OK);
+    assert_true(taken.data == NULL && entry(&taken, 123, 8) == kept);
+    sl_panels_clear(&taken);
+    sl_free(W);
+    sl_free(V);
+}
+
+static void a_unit_vector_is_removed_from_a_panel(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x2e30e);
+    double *v = random_numbers(&rng, ROWS), *W = random_numbers(&rng, 8 * ROWS), *before = NULL;
+    double length = 0.0;
+    for (int32_t i = 0; i < ROWS; i++) {
+        length += v[i] * v[i];
+    }
+    for (int32_t i = 0; i < ROWS; i++) {
+        v[i] /= sqrt(length);
+    }
+    before = sl_copy(W, 8 * ROWS, sizeof *W);
+    assert_non_null(before);
+    sl_panel_remove(ROWS, v, W, NULL);
+    for (int32_t c = 0; c < 8; c++) {
+        double share = 0.0, left = 0.0;
+        for (int64_t i = 0; i < ROWS; i++) {
+            share += v[i] * before[8 * i + c];
+            left += v[i] * W[8 * i + c];
+        }
+        assert_true(fabs(left) < rounding);
+        assert_true(test_near(W[8 * 777 + c], before[8 * 777 + c] - share * v[777], 1e-13));
+    }
+    sl_free(v);
+    sl_free(W);
+    sl_free(before);
+}
+
+/* After W -= Q (Q'W) against columns that are orthonormal nothing is left in them, whatever the number of workers. */
+static void project_and_subtract(sl_precision precision)
+{
     test_rng rng = test_rng_seed(0x9109ec);
     enum { COLUMNS = 13, W8 = 8 };
-    sl_panels M = random_panels(&rng, COLUMNS);
+    sl_panels M = random_panels(&rng, COLUMNS, precision);
     double *W = random_numbers(&rng, W8 * ROWS), *V = random_numbers(&rng, W8 * ROWS);
     double *partial = sl_alloc(sl_panels_partial_size(ROWS, COLUMNS), sizeof *partial);
     assert_non_null(partial);
@@ -166,29 +222,49 @@ static void projection_leaves_nothing_and_never_depends_on_workers(void **state)
     sl_panels_clear(&M);
 }
 
-static void rotation_is_the_product_in_place_or_elsewhere(void **state)
+static void projection_leaves_nothing_and_never_depends_on_workers(void **state)
 {
     (void)state;
+    project_and_subtract(SL_DOUBLE);
+    project_and_subtract(SL_SINGLE);
+}
+
+static void rotate_and_compare(sl_precision precision)
+{
     test_rng rng = test_rng_seed(0x207a7e);
-    sl_panels M = random_panels(&rng, 19), to;
-    assert_int_equal(sl_panels_create(ROWS, 11, &to), SL_OK);
+    const double error = precision == SL_SINGLE ? 1e-6 : 1e-14;
+    sl_panels M = random_panels(&rng, 19, precision), to, wide;
+    assert_int_equal(sl_panels_create(ROWS, 11, precision, &to), SL_OK);
+    assert_int_equal(sl_panels_create(ROWS, 11, SL_DOUBLE, &wide), SL_OK);
     double *C = random_numbers(&rng, 19 * 11);
     assert_int_equal(sl_panels_rotate(&M, 19, C, 11, &to, NULL), SL_OK);
+    assert_int_equal(sl_panels_rotate(&M, 19, C, 11, &wide, NULL), SL_OK);
     for (int64_t r = 0; r < ROWS; r += 500) {
         for (int32_t k = 0; k < 11; k++) {
             double sum = 0.0;
             for (int32_t i = 0; i < 19; i++) {
                 sum += entry(&M, r, i) * C[k * 19 + i];
             }
-            assert_true(test_near(entry(&to, r, k), sum, 1e-14));
+            assert_true(test_near(entry(&to, r, k), sum, error));
+            assert_true(test_near(entry(&wide, r, k), sum, 1e-14));
         }
         assert_true(entry(&to, r, 11) == 0.0);
     }
     assert_int_equal(sl_panels_rotate(&M, 19, C, 11, NULL, NULL), SL_OK);
-    assert_memory_equal(M.data, to.data, sizeof(double) * 16 * ROWS);
+    const void *turned = M.single != NULL ? (const void *)M.single : M.data;
+    const void *elsewhere = to.single != NULL ? (const void *)to.single : to.data;
+    assert_memory_equal(turned, elsewhere, (precision == SL_SINGLE ? sizeof(float) : sizeof(double)) * 16 * ROWS);
     sl_panels_clear(&M);
     sl_panels_clear(&to);
+    sl_panels_clear(&wide);
     sl_free(C);
+}
+
+static void rotation_is_the_product_in_place_or_elsewhere(void **state)
+{
+    (void)state;
+    rotate_and_compare(SL_DOUBLE);
+    rotate_and_compare(SL_SINGLE);
 }
 
 static void gram_matrices_and_residuals_agree_with_the_matrix(void **state)
@@ -207,7 +283,7 @@ static void gram_matrices_and_residuals_agree_with_the_matrix(void **state)
     }
     sl_rows rows;
     assert_int_equal(sl_rows_create(A, perm, &rows), SL_OK);
-    sl_panels M = random_panels(&rng, COLUMNS);
+    sl_panels M = random_panels(&rng, COLUMNS, SL_DOUBLE);
     double XX[COLUMNS * COLUMNS], XAX[COLUMNS * COLUMNS], norm[COLUMNS];
     double *lambda = random_numbers(&rng, COLUMNS);
     assert_int_equal(sl_panels_grams(&M, COLUMNS, &rows, XX, XAX, NULL), SL_OK);
@@ -248,6 +324,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kernels_agree_with_plain_loops),
         cmocka_unit_test(blocks_are_stored_and_loaded_across_panels),
+        cmocka_unit_test(single_panels_round_what_is_stored),
+        cmocka_unit_test(a_unit_vector_is_removed_from_a_panel),
         cmocka_unit_test(projection_leaves_nothing_and_never_depends_on_workers),
         cmocka_unit_test(rotation_is_the_product_in_place_or_elsewhere),
         cmocka_unit_test(gram_matrices_and_residuals_agree_with_the_matrix),
