@@ -160,7 +160,8 @@ void gen_cage_clear(gen_cage *cage)
     *cage = (gen_cage){0};
 }
 
-/* The mirrored half: vertices off the plane once more, quads the other way round. */
+/* The mirrored half: vertices off the plane once more, quads the other way round, each from the image of its first
+ * corner on, so that bent quads of both halves are triangulated along images of one diagonal. */
 static void join_mirror_image(gen_cage *c)
 {
     const int64_t nv = c->nv, nq = c->nq;
@@ -175,7 +176,7 @@ static void join_mirror_image(gen_cage *c)
     }
     for (int64_t q = 0; q < nq && !c->failed; q++) {
         const int32_t *quad = c->quad + 4 * q;
-        gen_cage_quad(c, (int32_t[]){image[quad[3]], image[quad[2]], image[quad[1]], image[quad[0]]});
+        gen_cage_quad(c, (int32_t[]){image[quad[0]], image[quad[3]], image[quad[2]], image[quad[1]]});
     }
     sl_free(image);
 }

@@ -51,7 +51,8 @@ void gen_cage_limb(gen_cage *cage, const int32_t *region, int32_t count, const d
 void gen_cage_smooth(gen_cage *cage);
 
 /* Smooths `levels` times, joins the mirrored half (its vertices follow in the order of those they mirror, those at
- * x = 0 are shared), hands the mesh over and empties the cage. SL_OUT_OF_MEMORY. */
+ * x = 0 are shared; its quads in the order of theirs, from the image of the first corner on), hands the mesh over and
+ * empties the cage. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status gen_cage_finish(gen_cage *cage, int32_t levels, sl_generated **out);
 
 void gen_cage_clear(gen_cage *cage);

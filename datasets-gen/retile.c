@@ -129,13 +129,14 @@ static void find_partners(tiling *t)
     }
 }
 
-/* A facet given by corners of the half modelled, or its image: corner k of f is corner 3 - k of its image. */
+/* A facet given by corners of the half modelled, or its image, from the same corner on: corner k of f is corner -k
+ * (mod 4) of its image. */
 static void add_facet(const tiling *t, gen_builder *b, bool image, int32_t n, const int32_t *halfedge)
 {
     int32_t corner[6];
     for (int32_t i = 0; i < n; i++) {
-        const int32_t h = halfedge[image ? n - 1 - i : i];
-        corner[i] = image ? vertex_of(t, t->half + h / 4, 3 - h % 4) : vertex_of(t, h / 4, h % 4);
+        const int32_t h = halfedge[image ? (n - i) % n : i];
+        corner[i] = image ? vertex_of(t, t->half + h / 4, 4 - h % 4) : vertex_of(t, h / 4, h % 4);
     }
     gen_facet(b, n, corner);
 }

@@ -213,6 +213,23 @@ static void planted_maps_are_the_symmetries_they_say(void **state)
     }
 }
 
+/* A facet and its mirror image start at corners that are images: a fan cuts both along the same diagonals. */
+static void facets_and_their_mirror_images_start_at_the_same_corner(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < SL_COUNTOF(models); k++) {
+        sl_generated *mesh = make(models[k].name, 1, 1);
+        for (int32_t i = 0; i < mesh->nplanted; i++) {
+            const sl_planted *p = &mesh->planted[i];
+            for (int32_t f = 0; f < mesh->nf && p->mirror && fabs(p->matrix[0] + 1.0) < 1e-12; f++) {
+                assert_int_equal(mesh->index[mesh->face_first[p->face[f]]],
+                                 p->vertex[mesh->index[mesh->face_first[f]]]);
+            }
+        }
+        sl_generated_free(mesh);
+    }
+}
+
 static double area_of(const sl_generated *mesh, int32_t f)
 {
     const int32_t first = mesh->face_first[f], n = mesh->face_first[f + 1] - first;
@@ -337,6 +354,7 @@ int main(void)
         cmocka_unit_test(the_same_bytes_come_again_for_any_seed),
         cmocka_unit_test(vertices_have_their_mirror_image_to_the_bit_or_none_has),
         cmocka_unit_test(planted_maps_are_the_symmetries_they_say),
+        cmocka_unit_test(facets_and_their_mirror_images_start_at_the_same_corner),
         cmocka_unit_test(no_facet_is_degenerate),
         cmocka_unit_test(surfaces_face_outward_and_do_not_cross_themselves),
         cmocka_unit_test(a_line_of_edges_runs_down_the_front_of_the_pullover),
