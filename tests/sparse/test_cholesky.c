@@ -265,6 +265,57 @@ static void values_not_finite_or_of_another_pattern_are_bad_input(void **state)
     sl_csc_free(other);
 }
 
+/* Matrices of one entry d, shifted by sigma, and the status that each deserves. */
+static void the_smallest_matrices_have_the_statuses_of_large_ones(void **state)
+{
+    (void)state;
+    static const struct {
+        double d, sigma;
+        sl_factor_kind kind;
+        sl_status status;
+    } one[] = {{2.75, 0.0, SL_FACTOR_LLT, SL_OK},
+               {2.75, 3.25, SL_FACTOR_LLT, SL_NOT_POSITIVE_DEFINITE},
+               {-2.75, 0.0, SL_FACTOR_LLT, SL_NOT_POSITIVE_DEFINITE},
+               {0.0, 0.0, SL_FACTOR_LLT, SL_NOT_POSITIVE_DEFINITE},
+               {-2.75, 0.5, SL_FACTOR_LDLT, SL_OK},
+               {2.75, 2.75, SL_FACTOR_LDLT, SL_SINGULAR},
+               {NAN, 0.0, SL_FACTOR_LLT, SL_BAD_INPUT},
+               {INFINITY, 0.0, SL_FACTOR_LDLT, SL_BAD_INPUT},
+               {2.75, NAN, SL_FACTOR_LDLT, SL_BAD_INPUT},
+               {2.75, -INFINITY, SL_FACTOR_LLT, SL_BAD_INPUT}};
+    for (size_t k = 0; k < SL_COUNTOF(one); k++) {
+        int64_t colptr[] = {0, 1};
+        int32_t row[] = {0}, bad = -1;
+        double val[] = {one[k].d}, X[] = {0.375, -1.5, 9.25}; /* three sides */
+        const sl_csc A = {1, 1, colptr, row, val};
+        sl_cholesky_def def = sl_cholesky_default();
+        sl_cholesky *F = NULL;
+        def.kind = one[k].kind;
+        assert_int_equal(sl_cholesky_analyze(&A, &def, &F), SL_OK);
+        assert_int_equal(sl_cholesky_nnz(F), 1);
+        assert_int_equal(sl_cholesky_factor_shifted(F, &A, one[k].sigma, NULL, &bad), one[k].status);
+        const bool pivot = one[k].status == SL_NOT_POSITIVE_DEFINITE || one[k].status == SL_SINGULAR;
+        assert_int_equal(bad, pivot ? 0 : -1);
+        if (one[k].status == SL_OK) {
+            solve(F, X, 3);
+            assert_true(test_near(X[2], 9.25 / (one[k].d - one[k].sigma), 8 * TEST_EPS));
+        }
+        sl_cholesky_free(F);
+    }
+    int64_t colptr[] = {0};
+    double nothing[] = {0.5};
+    const sl_csc empty = {0, 0, colptr, NULL, NULL};
+    sl_cholesky *F = NULL;
+    int64_t kept = -1;
+    assert_int_equal(sl_cholesky_analyze(&empty, NULL, &F), SL_OK);
+    assert_int_equal(sl_cholesky_nnz(F), 0);
+    assert_true(sl_cholesky_factor_bytes(F, &kept) >= 0 && kept == 0);
+    assert_int_equal(sl_cholesky_factor(F, &empty, NULL), SL_OK);
+    solve(F, nothing, 5);
+    assert_true(test_near(nothing[0], 0.5, 0.0));
+    sl_cholesky_free(F);
+}
+
 static void bad_patterns_and_permutations_are_bad_input(void **state)
 {
     (void)state;
@@ -354,6 +405,7 @@ int main(void)
         cmocka_unit_test(a_bad_pivot_names_the_column_of_the_matrix),
         cmocka_unit_test(pivots_at_or_below_the_relative_bound_are_rejected),
         cmocka_unit_test(values_not_finite_or_of_another_pattern_are_bad_input),
+        cmocka_unit_test(the_smallest_matrices_have_the_statuses_of_large_ones),
         cmocka_unit_test(bad_patterns_and_permutations_are_bad_input),
         cmocka_unit_test(two_threads_solve_with_one_factor),
     };
