@@ -1,9 +1,10 @@
-/* Scans: dense irregular triangles with noise, no symmetry in connectivity or geometry. A rock, a bust. */
+/* Scans: dense irregular triangles with noise. A rock without any symmetry; a bust, symmetric but for the noise. */
 #include "boxmodel.h"
 #include "geom/vec3.h"
 #include "grid.h"
 #include "icosphere.h"
 #include "models.h"
+#include "plant.h"
 #include "roughen.h"
 
 #include <math.h>
@@ -122,6 +123,7 @@ static void add_foot_and_head(gen_cage *cage)
 sl_status gen_bust(uint64_t seed, int32_t scale, sl_generated **out)
 {
     static const double here[12] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    static const double mirror[12] = {-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
     gen_cage cage = {.mirrored = true};
     gen_builder b = {0};
     sl_rng rng = sl_rng_seed(seed);
@@ -140,5 +142,6 @@ sl_status gen_bust(uint64_t seed, int32_t scale, sl_generated **out)
     gen_split_quads(&b, &rng);
     gen_flip_edges(&b, &rng, 3);
     gen_add_noise(&b, &rng, 0.09);
-    return gen_finish(&b, out);
+    const sl_status finished = gen_finish(&b, out);
+    return finished != SL_OK ? finished : gen_planted(gen_plant_near(*out, "mirror x", mirror), out);
 }

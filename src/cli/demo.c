@@ -21,7 +21,7 @@ static void print_list(void)
     int32_t count = 0;
     const sl_generator *generator = sl_generators(&count);
     for (int32_t k = 0; k < count; k++) {
-        printf("%-12s %s\n", generator[k].name, generator[k].what);
+        printf("%-14s %s\n", generator[k].name, generator[k].what);
     }
 }
 

@@ -163,6 +163,7 @@ static void the_connectivity_has_as_many_automorphisms_as_the_shape(void **state
     assert_int_equal(wrong, 0);
 }
 
+/* Of the surface only: no map of facets. */
 static void controls_have_nothing_planted(void **state)
 {
     static const char *const controls[] = {"tree",          "rock",  "bust", "leaning",
@@ -171,8 +172,42 @@ static void controls_have_nothing_planted(void **state)
     for (size_t k = 0; k < SL_COUNTOF(controls); k++) {
         sl_generated *m = make(sl_generator_find(controls[k]), 1, 1);
         assert_int_equal(m->nplanted, 0);
-        assert_int_equal(m->nnear, strcmp(controls[k], "body-remeshed") == 0);
+        assert_int_equal(m->nnear, strcmp(controls[k], "body-remeshed") == 0 || strcmp(controls[k], "bust") == 0);
         sl_generated_free(m);
+    }
+}
+
+/* Largest distance of a mirrored vertex to the nearest vertex, over the extent: the surface is about there. */
+static double distance_of_image(const sl_generated *m, const double matrix[12])
+{
+    double worst = 0.0;
+    for (int64_t v = 0; v < m->nv; v += 7) {
+        double nearest = HUGE_VAL;
+        for (int64_t w = 0; w < m->nv; w++) {
+            double d = 0.0;
+            for (int k = 0; k < 3; k++) {
+                const double *row = matrix + 4 * k, *x = m->xyz + 3 * v;
+                const double moved = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3] - m->xyz[3 * w + k];
+                d += moved * moved;
+            }
+            nearest = fmin(nearest, d);
+        }
+        worst = fmax(worst, sqrt(nearest));
+    }
+    return worst / extent_of(m);
+}
+
+static void what_is_near_is_near(void **state)
+{
+    static const char *const name[] = {"body-remeshed", "bust"};
+    (void)state;
+    for (size_t k = 0; k < SL_COUNTOF(name); k++) {
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            sl_generated *m = make(sl_generator_find(name[k]), seed, 1);
+            const double away = distance_of_image(m, m->near[0].matrix);
+            assert_true(k == 0 ? away < 1e-12 : away > 1e-6 && away < 0.01);
+            sl_generated_free(m);
+        }
     }
 }
 
@@ -339,6 +374,7 @@ int main(void)
         cmocka_unit_test(planted_maps_are_automorphisms_and_exact_ones_fit_the_positions),
         cmocka_unit_test(the_connectivity_has_as_many_automorphisms_as_the_shape),
         cmocka_unit_test(controls_have_nothing_planted),
+        cmocka_unit_test(what_is_near_is_near),
         cmocka_unit_test(some_mirrors_run_through_facets_and_some_along_edges),
         cmocka_unit_test(copies_are_equal_vertex_by_vertex),
         cmocka_unit_test(the_json_beside_a_model_holds_the_same_maps),
