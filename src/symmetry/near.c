@@ -11,7 +11,8 @@
 #include <string.h>
 
 enum {
-    SAMPLES = 2048, /* of the final fit */
+    SAMPLES = 2048, /* of the final fit, at most */
+    PER_CORNER = 4, /* of a small mesh */
     COARSE = 256,
     MIDDLE = 512,
     COARSE_ROUNDS = 10, /* for each plane; */
@@ -41,7 +42,7 @@ typedef struct mirror_search {
     double *area;              /* nf */
     double total, centre[3];   /* of the area */
     double axis[9], moment[3]; /* principal axes, ascending moments */
-    double *sample, *image;    /* 3 SAMPLES: facet centroids; nearest to their mirror images */
+    double *sample, *image;    /* 3 SAMPLES: corners; nearest to their mirror images */
     double *distance, *sorted; /* SAMPLES */
     int32_t samples;
 } mirror_search;
@@ -106,14 +107,18 @@ static void find_axes(mirror_search *s)
     sl_eigen3(moment, s->moment, s->axis);
 }
 
-/* Facet centroids at equal steps of area; a large facet as often as it covers steps. */
+/* Corners of facets at equal steps of area, of a large facet one after the other: where a polygon is not plane, its
+ * mirror image may be cut into other triangles, but the corners lie on both. */
 static void take_samples(mirror_search *s)
 {
+    const sl_mesh *m = s->mesh;
+    const int32_t wanted = m->nh < SAMPLES / PER_CORNER ? PER_CORNER * m->nh : SAMPLES;
     double passed = 0.0;
-    for (int32_t f = 0; f < s->mesh->nf; f++) {
+    for (int32_t f = 0; f < m->nf; f++) {
         passed += s->area[f] / s->total;
-        while (s->samples < SAMPLES && (s->samples + 0.5) / SAMPLES < passed) {
-            sl_mesh_face_centroid(s->mesh, f, &s->sample[3 * s->samples++]);
+        while (s->samples < wanted && (s->samples + 0.5) / wanted < passed) {
+            const int32_t h = m->face_first[f] + s->samples % sl_degree(m, f);
+            memcpy(&s->sample[3 * s->samples++], &m->xyz[3 * (int64_t)m->origin[h]], 3 * sizeof *s->sample);
         }
     }
 }

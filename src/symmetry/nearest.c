@@ -151,12 +151,13 @@ void sl_nearest_free(sl_nearest *tree)
     }
 }
 
-static double box_distance2(const box *b, const double p[3])
+static inline double box_distance2(const box *b, const double p[3])
 {
     double sum = 0.0;
     for (int k = 0; k < 3; k++) {
-        const double d = fmax(fmax(b->low[k] - p[k], p[k] - b->high[k]), 0.0);
-        sum += d * d;
+        const double below = b->low[k] - p[k], above = p[k] - b->high[k];
+        const double d = below > above ? below : above;
+        sum += d > 0.0 ? d * d : 0.0;
     }
     return sum;
 }
@@ -175,7 +176,8 @@ static void nearest_on_segment(const double a[3], const double b[3], const doubl
     sl_vec3_sub(b, a, e);
     sl_vec3_sub(p, a, d);
     const double length2 = sl_vec3_dot(e, e);
-    const double t = length2 > 0.0 ? fmin(fmax(sl_vec3_dot(e, d) / length2, 0.0), 1.0) : 0.0;
+    double t = length2 > 0.0 ? sl_vec3_dot(e, d) / length2 : 0.0;
+    t = t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
     for (int k = 0; k < 3; k++) {
         out[k] = a[k] + t * e[k];
     }

@@ -7,7 +7,7 @@
 static int32_t find_diagonal(const sl_mesh *mesh, const int32_t *partner, int32_t f)
 {
     const int32_t g = partner[f];
-    if (g < 0 || g == f || partner[g] != f || sl_degree(mesh, f) != 3 || sl_degree(mesh, g) != 3) {
+    if (g < 0 || g >= mesh->nf || g == f || partner[g] != f || sl_degree(mesh, f) != 3 || sl_degree(mesh, g) != 3) {
         return -1;
     }
     const int32_t lower = f < g ? f : g, other = f < g ? g : f;

@@ -7,6 +7,7 @@
 enum { SWEEPS = 30 };
 
 static const double FLAT = 1e-8;        /* smallest over largest singular value of points in one plane */
+static const double NOISE = 1e-14;      /* of the sums of products */
 static const double ORTHOGONAL = 1e-16; /* cosine of columns that need no rotation */
 
 /* Rotates columns i and j of the 3 x 3 matrices A and V. */
@@ -101,15 +102,18 @@ void sl_rigid_fit(const sl_rigid_sums *sums, const double origin_p[3], const dou
 {
     double A[9], V[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, s[3];
     const double n = sums->n > 0.0 ? sums->n : 1.0;
+    double largest = 0.0; /* of what is subtracted: its rounding is no direction */
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             A[3 * i + j] = sums->pq[3 * i + j] - sums->q[i] * sums->p[j] / n;
+            largest = fmax(largest, fabs(sums->pq[3 * i + j]));
         }
     }
     orthogonalise(A, V);
     int order[3] = {0, 1, 2};
     for (int k = 0; k < 3; k++) {
         s[k] = sqrt(column_dot(A, k, k));
+        s[k] = s[k] > NOISE * largest ? s[k] : 0.0;
     }
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2 - i; j++) {

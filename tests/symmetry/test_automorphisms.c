@@ -1,0 +1,356 @@
+#include "checks.h"
+
+static void compare_with_brute_force(const model *m)
+{
+    sl_mesh *mesh = model_build(m);
+    sl_symmetry *s = find_all(mesh, NULL, 100000);
+    assert_int_equal(s->components, 1);
+    assert_int_equal(s->nmap, brute_force_count(m));
+    assert_false(s->truncated);
+    check_all(mesh, s);
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+}
+
+static void regular_meshes_have_as_many_automorphisms_as_brute_force_finds(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xb0b0);
+    for (int which = 0; which < 7; which++) {
+        model m = model_new();
+        switch (which) {
+        case 0:
+            model_box(&m, 1, 1, 1);
+            break;
+        case 1:
+            model_box(&m, 2, 1, 3);
+            break;
+        case 2:
+            model_icosphere(&m, 0);
+            break;
+        case 3:
+            model_torus(&m, 3, 5);
+            break;
+        case 4:
+            model_torus(&m, 4, 4); /* 16 facets: more symmetric than it looks */
+            break;
+        case 5:
+            model_quad(&m, model_vertex(&m, 0, 0, 0), model_vertex(&m, 1, 0, 0), model_vertex(&m, 1, 1, 0.2),
+                       model_vertex(&m, 0, 1, 0));
+            break;
+        default:
+            model_triangle(&m, model_vertex(&m, 0, 0, 0), model_vertex(&m, 1, 0, 0), model_vertex(&m, 0, 1, 0));
+            break;
+        }
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        compare_with_brute_force(&m);
+        model_free(&m);
+    }
+}
+
+static void random_meshes_have_as_many_automorphisms_as_brute_force_finds(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5e7);
+    for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
+        int32_t mirror[400];
+        model m = model_new();
+        model_planted(&m, &rng, 1 + test_index(&rng, 3), 1 + test_index(&rng, 3), trial % 2 == 1, trial % 3 == 0,
+                      mirror);
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        compare_with_brute_force(&m);
+        model_free(&m);
+    }
+}
+
+/* Number of symmetries with the identity. */
+static void expect_order(const model *m, int32_t order, int32_t mirrors)
+{
+    sl_mesh *mesh = model_build(m);
+    sl_symmetry *s = find_all(mesh, NULL, 1000);
+    int32_t found = 0;
+    assert_int_equal(s->nmap + 1, order);
+    assert_false(s->truncated);
+    for (int32_t i = 0; i < s->nmap; i++) {
+        const sl_symmetry_map *map = &s->map[i];
+        const double *T = map->isometry;
+        const double trace = T[0] + T[5] + T[10];
+        assert_int_equal(map->kind, SL_SYMMETRY_EXACT);
+        check_map(mesh, s, map);
+        const bool mirror = map->reverses && map->order == 2 && fabs(trace - 1.0) < 1e-6;
+        assert_true(!mirror || map->separates);
+        assert_true(mirror == (i < mirrors)); /* mirrors first */
+        found += mirror;
+    }
+    assert_int_equal(found, mirrors);
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+}
+
+static void groups_of_solids_have_their_orders_and_mirrors(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t size[3], order, mirrors;
+    } boxes[] = {{{8, 8, 8}, 48, 9}, {{8, 8, 4}, 16, 5}, {{4, 4, 12}, 16, 5}, {{3, 4, 5}, 8, 3}, {{7, 7, 7}, 48, 9}};
+    test_rng rng = test_rng_seed(48);
+    for (size_t i = 0; i < SL_COUNTOF(boxes); i++) {
+        model m = model_new();
+        model_box(&m, boxes[i].size[0], boxes[i].size[1], boxes[i].size[2]);
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        expect_order(&m, boxes[i].order, boxes[i].mirrors);
+        model_free(&m);
+    }
+    for (int32_t level = 0; level < 4; level++) {
+        double T[12];
+        model m = model_new();
+        model_icosphere(&m, level);
+        model_random_isometry(&rng, false, T);
+        model_move(&m, T);
+        expect_order(&m, 120, 15);
+        model_free(&m);
+    }
+}
+
+/* Of a torus of n x k quads 4 n automorphisms are isometries, the others turn it inside out or around its core. */
+static void exact_maps_of_a_torus_come_before_the_others(void **state)
+{
+    (void)state;
+    static const int32_t size[3][2] = {{5, 6}, {20, 12}, {40, 26}};
+    for (int i = 0; i < 3; i++) {
+        const int32_t n = size[i][0], k = size[i][1];
+        model m = model_new();
+        model_torus(&m, n, k);
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, 10000);
+        const int32_t all = 4 * n * k - 1;
+        assert_true(s->truncated ? s->nmap < all : s->nmap == all);
+        assert_true(s->nmap >= 4 * n);
+        for (int32_t j = 0; j < s->nmap; j++) {
+            assert_int_equal(s->map[j].kind == SL_SYMMETRY_EXACT, j < 4 * n - 1);
+        }
+        for (int32_t j = 0; j < n + 1; j++) { /* n planes through the axis, one across */
+            assert_true(s->map[j].separates && s->map[j].reverses && s->map[j].order == 2);
+        }
+        for (int32_t j = 0; j < s->nmap; j += 7) {
+            check_map(mesh, s, &s->map[j]);
+        }
+        sl_symmetry_free(s);
+        s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
+        assert_true(s->truncated);
+        assert_int_equal(s->nmap, SL_SYMMETRY_MOST);
+        /* the first three stand at right angles to one another where the torus has such */
+        double most = -HUGE_VAL;
+        for (int32_t a = 0; a < 2; a++) {
+            const double *T = s->map[a].isometry, *U = s->map[a + 1].isometry;
+            double sum = 0.0; /* trace of T U = 1 + 2 cos(2 angle) with the angle of the planes */
+            for (int r = 0; r < 3; r++) {
+                for (int c = 0; c < 3; c++) {
+                    sum += T[4 * r + c] * U[4 * c + r];
+                }
+            }
+            most = fmax(most, sum);
+        }
+        assert_true(most < -0.9 || n % 2 == 1);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
+static int32_t planted_axis(const model *m, const int32_t *vertex, const int32_t *mirror, int32_t nv)
+{
+    int32_t count = 0; /* edges of two vertices on the plane, met from both sides */
+    uint8_t *fixed = sl_calloc(m->nv, 1);
+    for (int32_t v = 0; v < nv; v++) {
+        fixed[vertex[v]] = mirror[v] == v;
+    }
+    for (int32_t f = 0; f < m->nf; f++) {
+        const int32_t d = m->first[f + 1] - m->first[f];
+        for (int32_t k = 0; k < d; k++) {
+            count += fixed[m->index[m->first[f] + k]] && fixed[m->index[m->first[f] + (k + 1) % d]];
+        }
+    }
+    sl_free(fixed);
+    return count / 2;
+}
+
+static void planted_mirrors_are_found_and_nothing_else(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x91a7);
+    for (int trial = 0; trial < 40 * test_multiplier(); trial++) {
+        const int32_t n = 4 + test_index(&rng, 12), k = 4 + test_index(&rng, 12);
+        const bool straddle = trial % 2 == 1;
+        int32_t mirror[1000], vertex[1000];
+        double T[12];
+        model m = model_new();
+        model_planted(&m, &rng, n, k, straddle, false, mirror);
+        model_random_isometry(&rng, false, T);
+        model_move(&m, T);
+        model_relabel(&m, &rng, 1, NULL, vertex);
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
+        assert_int_equal(s->nmap, 1);
+        const sl_symmetry_map *map = &s->map[0];
+        check_map(mesh, s, map);
+        assert_true(map->reverses && map->separates && map->order == 2);
+        assert_int_equal(map->kind, SL_SYMMETRY_EXACT);
+        assert_int_equal(map->fixed_facets, straddle ? k : 0);
+        assert_int_equal(map->axis_edges, planted_axis(&m, vertex, mirror, m.nv));
+        for (int32_t h = 0; h < mesh->nh; h++) {
+            const int32_t v = mesh->input_vertex[mesh->origin[h]];
+            const int32_t w = mesh->input_vertex[mesh->origin[sl_symmetry_image_corner(mesh, s, map, h)]];
+            int32_t old = 0;
+            while (vertex[old] != v) {
+                old++;
+            }
+            assert_int_equal(w, vertex[mirror[old]]);
+        }
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
+/* One more triangle on a border edge that is not its own mirror image. */
+static void add_ear(model *m, const int32_t *mirror)
+{
+    const int32_t ear = m->nv, corners = m->first[m->nf];
+    model_vertex(m, 0.3, -2.0, 0.4);
+    for (int32_t k = 0; k < corners; k++) {
+        const int32_t u = m->index[k];
+        int32_t corner = 0;
+        for (int32_t v = 0; v < ear; v++) {
+            if (mirror[u] != u && mirror[v] != u && facet_with_edge(m, u, v, false, &corner) >= 0 &&
+                facet_with_edge(m, v, u, false, &corner) < 0) {
+                model_triangle(m, v, u, ear);
+                return;
+            }
+        }
+    }
+}
+
+static void sheets_without_symmetry_have_none(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xa5);
+    for (int trial = 0; trial < 30 * test_multiplier(); trial++) {
+        int32_t mirror[1000];
+        model m = model_new();
+        model_planted(&m, &rng, 6, 5 + test_index(&rng, 9), trial % 2 == 1, false, mirror);
+        add_ear(&m, mirror);
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
+        assert_int_equal(s->nmap, 0);
+        assert_false(s->truncated);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
+/* Splits the first quad by a diagonal. */
+static void one_edge_more_ends_a_symmetry(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xf11b);
+    int32_t mirror[1000];
+    model m = model_new(), cut = model_new();
+    model_planted(&m, &rng, 9, 8, false, true, mirror);
+    memcpy(cut.xyz, m.xyz, 3 * (size_t)m.nv * sizeof *m.xyz);
+    cut.nv = m.nv;
+    for (int32_t f = 0; f < m.nf; f++) {
+        const int32_t *q = &m.index[4 * f];
+        if (f == 37) {
+            model_triangle(&cut, q[0], q[1], q[2]);
+            model_triangle(&cut, q[0], q[2], q[3]);
+        } else {
+            model_face(&cut, 4, q);
+        }
+    }
+    sl_mesh *whole = model_build(&m), *broken = model_build(&cut);
+    sl_symmetry *s = find_all(whole, NULL, 64), *t = find_all(broken, NULL, 64);
+    assert_true(s->nmap >= 1 && s->map[0].kind == SL_SYMMETRY_EXACT);
+    for (int32_t i = 0; i < t->nmap; i++) {
+        assert_int_equal(t->map[i].kind, SL_SYMMETRY_TOPOLOGICAL);
+    }
+    sl_symmetry_free(s);
+    sl_symmetry_free(t);
+    sl_mesh_free(whole);
+    sl_mesh_free(broken);
+    model_free(&m);
+    model_free(&cut);
+}
+
+static void a_perturbed_symmetry_is_near_then_topological(void **state)
+{
+    (void)state;
+    static const double size[4] = {0.0, 1e-12, 3e-3, 1.0};
+    static const sl_symmetry_kind kind[4] = {SL_SYMMETRY_EXACT, SL_SYMMETRY_EXACT, SL_SYMMETRY_NEAR,
+                                             SL_SYMMETRY_TOPOLOGICAL};
+    for (int i = 0; i < 4; i++) {
+        test_rng rng = test_rng_seed(0x77);
+        int32_t mirror[1000];
+        model m = model_new();
+        model_planted(&m, &rng, 6, 7, false, false, mirror);
+        model_perturb(&m, &rng, size[i]);
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, 64);
+        assert_int_equal(s->nmap, 1);
+        assert_int_equal(s->map[0].kind, kind[i]);
+        const double extent = sl_mesh_diagonal(mesh) / mesh->scale; /* in the model's units */
+        assert_true(s->map[0].deviation <= 4.0 * size[i] / extent + 1e-14);
+        assert_true(s->map[0].misfit >= 0.1 * size[i] / extent);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
+/* A sheet bent along a line keeps its edge lengths and is no longer symmetric. */
+static void equal_edge_lengths_do_not_make_a_bent_sheet_symmetric(void **state)
+{
+    (void)state;
+    model m = model_new();
+    for (int i = -2; i <= 2; i++) {
+        for (int j = 0; j < 4; j++) { /* lines i = 1 and i = -1 are folded by different angles */
+            const double fold = i == 2 ? 0.7 : i == -2 ? 0.2 : 0.0;
+            const double x = i == 2 || i == -2 ? (i > 0 ? 1.0 : -1.0) * (1.0 + cos(fold)) : i;
+            model_vertex(&m, x, j * (1.0 + 0.1 * j), sin(fold));
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 3; j++) {
+            model_quad(&m, 4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j);
+        }
+    }
+    sl_mesh *mesh = model_build(&m);
+    sl_symmetry *s = find_all(mesh, NULL, 64);
+    int32_t isometric = 0;
+    for (int32_t i = 0; i < s->nmap; i++) {
+        assert_true(s->map[i].kind != SL_SYMMETRY_EXACT);
+        isometric += s->map[i].misfit < 1e-12;
+    }
+    assert_int_equal(isometric, 1);
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+    model_free(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(regular_meshes_have_as_many_automorphisms_as_brute_force_finds),
+        cmocka_unit_test(random_meshes_have_as_many_automorphisms_as_brute_force_finds),
+        cmocka_unit_test(groups_of_solids_have_their_orders_and_mirrors),
+        cmocka_unit_test(exact_maps_of_a_torus_come_before_the_others),
+        cmocka_unit_test(planted_mirrors_are_found_and_nothing_else),
+        cmocka_unit_test(sheets_without_symmetry_have_none),
+        cmocka_unit_test(one_edge_more_ends_a_symmetry),
+        cmocka_unit_test(a_perturbed_symmetry_is_near_then_topological),
+        cmocka_unit_test(equal_edge_lengths_do_not_make_a_bent_sheet_symmetric),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
