@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+/* A bound above this says nothing useful of an eigenspace. */
+static const double useful_bound = 0.02;
+
 /* What is known of a value. */
 typedef enum value_state { NOT_ZERO, UNKNOWN, ZERO } value_state;
 
@@ -46,7 +49,7 @@ static int32_t parity(const sl_solution *s, const skew_space *space, const int32
             trace += v[i] * v[map[i]];
         }
     }
-    if (!(space->bound < 0.02)) {
+    if (!(space->bound < useful_bound)) {
         return 0;
     }
     return trace > size - 0.5 ? 1 : trace < 0.5 - size ? -1 : 0;
@@ -87,13 +90,34 @@ static int32_t list_spaces(const sl_solution *s, skew_space *space)
     return count;
 }
 
+/* The share of a space on one component of the half: the trace of V' 1_C V. "Restricted to C" commutes with L on
+ * antisymmetric vectors (nothing joins two components but fixed nodes, where they vanish), so it is a whole number. */
+static double share_on(const sl_theorem_graph *graph, const sl_half *half, const sl_solution *s,
+                       const skew_space *space, int32_t component)
+{
+    const int32_t n = graph->pairs;
+    double sum = 0.0;
+    for (int32_t k = space->begin; k < space->end; k++) {
+        const double *v = s->vector + (int64_t)s->whole.n * k;
+        for (int32_t i = 0; i < n; i++) {
+            sum += half->component[i] == component ? v[i] * v[i] + v[i + n] * v[i + n] : 0.0;
+        }
+    }
+    return sum;
+}
+
 /* state[i]: what is known of the space i at f. */
-static sl_status judge_node(const sl_theorem_graph *graph, const sl_solution *s, const sl_theorem_def *def,
-                            const skew_space *space, int32_t spaces, int32_t f, bool use_second, value_state *state)
+static sl_status judge_node(const sl_theorem_graph *graph, const sl_half *half, const sl_solution *s,
+                            const sl_theorem_def *def, const skew_space *space, int32_t spaces, int32_t f,
+                            bool use_second, value_state *state)
 {
     int32_t nonzero = 0, unknown = 0, distinct = 0;
     for (int32_t k = 0; k < spaces; k++) {
         state[k] = length_at(s, &space[k], f) > space[k].bound ? NOT_ZERO : UNKNOWN;
+        if (state[k] == UNKNOWN && half->components > 1 && space[k].bound < useful_bound &&
+            share_on(graph, half, s, &space[k], half->component[f]) < 0.5) {
+            state[k] = ZERO;
+        }
         nonzero += state[k] == NOT_ZERO ? 1 : 0;
         unknown += state[k] == UNKNOWN ? 1 : 0;
     }
@@ -144,7 +168,7 @@ sl_status sl_state_axis(const sl_theorem_graph *graph, const sl_half *half, cons
             continue;
         }
         any = true;
-        SL_TRY(judge_node(graph, s, def, space, spaces, f, use_second, state));
+        SL_TRY(judge_node(graph, half, s, def, space, spaces, f, use_second, state));
         for (int32_t k = 0; k < spaces; k++) {
             tally->signs++;
             tally->zeros += state[k] == ZERO ? 1 : 0;

@@ -5,6 +5,8 @@
 #include "base/memory.h"
 #include "theorem/families_internal.h"
 
+static const int32_t dense_nodes = 512;
+
 typedef enum orbit_kind { GROUP, CORNERS, SIDES, CENTRE } orbit_kind;
 
 typedef struct orbits {
@@ -86,7 +88,8 @@ static sl_status make_group(sl_rng *rng, int32_t nodes, int32_t k, sl_theorem_gr
     *out = NULL;
     SL_TRY(make_orbits(rng, nodes, k, &o));
     edges.fixed = o.nodes;
-    const int32_t wanted = 1 + (int32_t)((1.0 + 0.8 * sl_rng_uniform(rng)) * o.nodes);
+    const double more = o.nodes < dense_nodes ? 0.8 : 0.1; /* large ones sparser: they fill up when factored */
+    const int32_t wanted = 1 + (int32_t)((1.0 + more * sl_rng_uniform(rng)) * o.nodes);
     for (int32_t tries = 0; edges.count < wanted && tries < 4 * wanted; tries++) {
         const int32_t x = sl_rng_index(rng, o.nodes), y = sl_rng_index(rng, o.nodes);
         add_edge_orbit(&o, &edges, x, y);

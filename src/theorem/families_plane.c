@@ -71,9 +71,9 @@ static void join(sl_edges *edges, int32_t a, int32_t b)
     }
 }
 
-/* A half of cells, mirrored along its left border: cells there meet their own images, or, with straddling cells, a
- * column of fixed nodes. */
-static sl_status mirror_cells(sl_rng *rng, const cells *c, bool straddle, sl_theorem_graph **out)
+/* A half of cells, mirrored along its left border: cells there meet their own images but for a share of gaps, or, with
+ * straddling cells, a column of fixed nodes. */
+static sl_status mirror_cells(sl_rng *rng, const cells *c, double gaps, bool straddle, sl_theorem_graph **out)
 {
     sl_edges edges = {.pairs = c->nodes, .fixed = straddle ? c->height : 0};
     for (int32_t y = 0; y < c->height; y++) {
@@ -92,7 +92,7 @@ static sl_status mirror_cells(sl_rng *rng, const cells *c, bool straddle, sl_the
         const int32_t border = node_at(c, 0, y, LEFT);
         if (straddle && border >= 0) {
             sl_edges_spoke(&edges, border, y);
-        } else if (border >= 0 && (y == 0 || sl_rng_uniform(rng) < 0.9)) {
+        } else if (border >= 0 && (y == 0 || sl_rng_uniform(rng) >= gaps)) {
             sl_edges_across(&edges, border, border);
         }
         if (straddle && y > 0) {
@@ -109,7 +109,7 @@ static sl_status make_cells(sl_rng *rng, int32_t width, int32_t height, double s
     sl_status status = cells_create(rng, width, height, split, hole, &c);
     *out = NULL;
     if (status == SL_OK) {
-        status = mirror_cells(rng, &c, straddle, out);
+        status = mirror_cells(rng, &c, hole, straddle, out);
     }
     cells_clear(&c);
     return status;
@@ -125,13 +125,17 @@ sl_status sl_make_planar(sl_rng *rng, int32_t nodes, sl_theorem_graph **out)
     return make_cells(rng, width, height, 0.15, sl_rng_uniform(rng) < 0.5 ? 0.08 : 0.0, sl_rng_uniform(rng) < 0.3, out);
 }
 
-/* One to four cells high, mirrored at its short side or along its length. */
+/* One to four cells high, mirrored at its short side or along its length. A long one mirrored along its length has an
+ * axis without gaps and no split cells: in one dimension disorder makes vectors fall off exponentially, and signs of
+ * values like 1e-20 cannot be read from doubles. */
 sl_status sl_make_strip(sl_rng *rng, int32_t nodes, sl_theorem_graph **out)
 {
+    const int32_t long_strip = 48;
     const int32_t thin = 1 + sl_rng_index(rng, 4);
     const int32_t length = nodes / 2 / (thin + 1) > 2 ? nodes / 2 / (thin + 1) : 2;
     const bool along = sl_rng_uniform(rng) < 0.5;
-    return make_cells(rng, along ? thin : length, along ? length : thin, 0.1, 0.0, sl_rng_uniform(rng) < 0.3, out);
+    const double split = along && length > long_strip ? 0.0 : 0.1;
+    return make_cells(rng, along ? thin : length, along ? length : thin, split, 0.0, sl_rng_uniform(rng) < 0.3, out);
 }
 
 /* Edges of a width x height grid of quads, closed in x and y or not, and an involution of its cells. */

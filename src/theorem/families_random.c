@@ -2,12 +2,13 @@
 #include "base/memory.h"
 #include "theorem/families_internal.h"
 
-/* A random tree on the pairs [first, first + count): each joins an earlier one, near ones more often where `thin` is
- * set. */
+#include <math.h>
+
+/* A random tree on the pairs [first, first + count): each joins an earlier one, a near one where `thin` is set. */
 static void add_tree(sl_rng *rng, sl_edges *edges, int32_t first, int32_t count, bool thin)
 {
     for (int32_t i = 1; i < count; i++) {
-        const int32_t reach = thin && i > 6 ? 6 : i;
+        const int32_t near = 6 + count / 64, reach = thin && i > near ? near : i;
         sl_edges_within(edges, first + i, first + i - 1 - sl_rng_index(rng, reach));
     }
 }
@@ -34,12 +35,14 @@ static void add_axis(sl_rng *rng, sl_edges *edges, int32_t first, int32_t count,
     }
 }
 
-/* Two copies of a random tree, joined here and there. */
+/* Two copies of a random tree, joined at a few places, however large: between many, vectors fall off exponentially, and
+ * signs of values like 1e-20 cannot be read from doubles. */
 sl_status sl_make_tree(sl_rng *rng, int32_t nodes, sl_theorem_graph **out)
 {
+    const double few = 16.0;
     sl_edges edges = {.pairs = nodes / 2};
     add_tree(rng, &edges, 0, edges.pairs, true);
-    add_axis(rng, &edges, 0, edges.pairs, 0.4 * sl_rng_uniform(rng));
+    add_axis(rng, &edges, 0, edges.pairs, sl_rng_uniform(rng) * fmin(0.4, few / nodes));
     return sl_edges_finish(&edges, out);
 }
 

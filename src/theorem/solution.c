@@ -153,14 +153,13 @@ void sl_solution_match(const sl_theorem_graph *graph, sl_solution *s, double *di
             cluster++;
         }
         if (skew) {
-            s->lowest_skew = j == 0 ? k : s->lowest_skew;
             s->skew[cluster] += s->skew[cluster] >= 0 ? 1 : 0;
         }
         i += skew ? 0 : 1;
         j += skew ? 1 : 0;
     }
-    if (s->lowest_skew < 0 && T->count > 0 && T->lambda[0] < S->end) { /* beyond L's own pairs, but the halves know */
-        s->lowest_skew = comparable(S, T->lambda[0]);
+    if (T->count > 0 && T->lambda[0] < S->end) { /* known even where it is beyond L's own pairs */
+        s->lowest_skew = comparable(S, T->lambda[0] - SL_CLUSTER_GAP * L->norm);
     }
 }
 

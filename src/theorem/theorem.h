@@ -52,7 +52,8 @@ typedef struct sl_theorem_result {
     int64_t crossed_one_sign;  /* of these, the lowest antisymmetric vector has one sign on the half as given */
     int64_t no_common_basis;   /* eigenspaces without a basis common to two mirrors that do not commute */
     /* of one graph alone; -1 = not known */
-    int32_t lowest_index;        /* of the lowest antisymmetric eigenvalue in L's spectrum, 0 = the constant vector */
+    int32_t lowest_index; /* of the lowest antisymmetric eigenvalue in L's spectrum, 0 = the constant vector; the first
+                             of those equal to it */
     sl_theorem_statement failed; /* the first statement violated; SL_THEOREM_STATEMENTS = none */
     char reason[160];            /* why */
 } sl_theorem_result;

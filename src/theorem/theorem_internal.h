@@ -6,6 +6,9 @@
 #include "sparse/csc.h"
 #include "theorem/theorem.h"
 
+/* Eigenvalues nearer to one another than this times ||A|| are not told apart: they are taken as one cluster. */
+static const double SL_CLUSTER_GAP = 1e-8;
+
 /* Eigenpairs of one matrix, ascending, with what is known of their errors. */
 typedef struct sl_pairs {
     int32_t n, count;
@@ -75,7 +78,7 @@ typedef struct sl_solution {
     sl_csc *L, *S, *T; /* whole, symmetric, antisymmetric */
     sl_pairs whole, symmetric, antisymmetric;
     int32_t *skew; /* per cluster of `whole`: antisymmetric eigenvalues in it, by the half spectra; -1 = unknown */
-    int32_t lowest_skew; /* number in L's spectrum of the lowest antisymmetric eigenvalue, -1 = unknown */
+    int32_t lowest_skew; /* symmetric eigenvalues below the lowest antisymmetric one, -1 = unknown */
     /* antisymmetric vectors of L, orthonormal in each cluster, resolved from L's own by U' P U: */
     int32_t vectors;
     double *vector;      /* nodes x vectors */
