@@ -47,4 +47,46 @@ typedef struct sl_bipartite {
  * nothing. Source: Hopcroft, Karp 1973 (matching); Konig 1931 (cover from matching). */
 void sl_minimum_vertex_cover(sl_bipartite *graph);
 
+/* The edges of a cut as a bipartite graph over its two shores. */
+typedef struct sl_cut {
+    int32_t *left, *right; /* n / 2 + 1: nodes of the shores */
+    int32_t *right_id;     /* n: where a node stands in right, -1 elsewhere */
+    int64_t *first;        /* n / 2 + 2 */
+    int32_t *adj;
+    int64_t edges;
+    sl_bipartite shores;
+} sl_cut;
+
+/* Room for cuts of a graph with n nodes into halves of at most n / 2 + 1. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_cut_init(sl_cut *cut, const sl_adjacency *graph);
+void sl_cut_clear(sl_cut *cut);
+
+/* A cut is gathered so: begin; for each node of the left side add its neighbours on the right one, then close it; then
+ * cover, which makes of it the smallest set of nodes that touches all edges: shores.left_in and right_in. */
+static inline void sl_cut_begin(sl_cut *cut)
+{
+    cut->edges = 0;
+    cut->shores.left_count = cut->shores.right_count = 0;
+}
+
+static inline void sl_cut_add(sl_cut *cut, int32_t neighbour)
+{
+    if (cut->right_id[neighbour] == -1) {
+        cut->right_id[neighbour] = cut->shores.right_count;
+        cut->right[cut->shores.right_count++] = neighbour;
+    }
+    cut->adj[cut->edges++] = cut->right_id[neighbour];
+}
+
+/* edges_before: cut->edges before the node's neighbours were added. */
+static inline void sl_cut_close(sl_cut *cut, int32_t node, int64_t edges_before)
+{
+    if (cut->edges > edges_before) {
+        cut->first[cut->shores.left_count] = edges_before;
+        cut->left[cut->shores.left_count++] = node;
+    }
+}
+
+void sl_cut_cover(sl_cut *cut);
+
 #endif

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Pieces this small are left to minimum degree: below, separators cost more fill than they save. */
@@ -24,19 +25,15 @@ typedef struct halver {
     int64_t *first;     /* n + 1: the graph with positions for nodes */
     int32_t *adj;       /* */
     bool *taken;        /* n: is in a separator */
-    int32_t *left;      /* n: shores of a cut, later the positions of separators still to be listed */
-    int32_t *right;     /* n */
-    int32_t *right_id;  /* n: where a position stands in right, -1 elsewhere */
-    int64_t *cut_first; /* n + 1 */
-    int32_t *cut_adj;
-    int32_t *separator; /* n: a stack */
+    int32_t *separator; /* n: a stack of positions still to be listed */
     int32_t separator_top;
-    sl_bipartite cut;
+    sl_cut cut;
     int32_t *piece, *order; /* results */
     int32_t pieces, placed;
 } halver;
 
-static int widest_axis(const point *p, int32_t count)
+/* The axis of largest extent, and that. */
+static int widest_axis(const point *p, int32_t count, double *least, double *most)
 {
     double lo[3], hi[3];
     memcpy(lo, p[0].x, sizeof lo);
@@ -51,6 +48,8 @@ static int widest_axis(const point *p, int32_t count)
     for (int axis = 1; axis < 3; axis++) {
         widest = hi[axis] - lo[axis] > hi[widest] - lo[widest] ? axis : widest;
     }
+    *least = lo[widest];
+    *most = hi[widest];
     return widest;
 }
 
@@ -95,6 +94,54 @@ static void select_smallest(point *p, int32_t count, int32_t middle, int axis)
     }
 }
 
+/* Slices of the extent that points are counted in: the one where the middle falls is all that is left to select in. */
+enum { SLICES = 1024, LEAST_SLICED = 1024 };
+
+static int32_t slice_of(double x, double least, double scale)
+{
+    const double slice = (x - least) * scale;
+    return slice < SLICES - 1 ? (int32_t)slice : SLICES - 1;
+}
+
+/* Sorts points by slice: those before `slice` first, those after it last. Returns where it begins; *end: where it ends.
+ */
+static int32_t sort_by_slice(point *p, int32_t count, int axis, double least, double scale, int32_t slice, int32_t *end)
+{
+    int32_t lo = 0, k = 0, hi = count;
+    while (k < hi) {
+        const int32_t s = slice_of(p[k].x[axis], least, scale);
+        if (s < slice) {
+            swap_points(&p[lo++], &p[k++]);
+        } else if (s > slice) {
+            swap_points(&p[k], &p[--hi]);
+        } else {
+            k++;
+        }
+    }
+    *end = hi;
+    return lo;
+}
+
+/* Puts the `middle` smallest along the widest axis first. */
+static void halve(point *p, int32_t count, int32_t middle)
+{
+    double least, most;
+    const int axis = widest_axis(p, count, &least, &most);
+    const double scale = SLICES / (most - least);
+    int32_t begin = 0, end = count;
+    if (count >= LEAST_SLICED && scale > 0.0 && isfinite(scale)) {
+        int32_t size[SLICES] = {0}, slice = 0, before_slice = 0;
+        for (int32_t k = 0; k < count; k++) {
+            size[slice_of(p[k].x[axis], least, scale)]++;
+        }
+        while (before_slice + size[slice] <= middle) {
+            before_slice += size[slice++];
+        }
+        begin = sort_by_slice(p, count, axis, least, scale, slice, &end);
+    }
+    select_smallest(p + begin, end - begin, middle - begin, axis);
+}
+
 static int32_t half_of_range(int32_t begin, int32_t end)
 {
     return begin + (end - begin) / 2;
@@ -103,8 +150,8 @@ static int32_t half_of_range(int32_t begin, int32_t end)
 static void sort_into_halves(point *points, int32_t begin, int32_t end)
 {
     while (end - begin > leaf_size) {
-        const int32_t middle = half_of_range(begin, end), count = end - begin;
-        select_smallest(points + begin, count, middle - begin, widest_axis(points + begin, count));
+        const int32_t middle = half_of_range(begin, end);
+        halve(points + begin, end - begin, middle - begin);
         sort_into_halves(points, begin, middle);
         begin = middle;
     }
@@ -130,46 +177,33 @@ static void renumber_graph(halver *d, const sl_adjacency *graph, int32_t *place)
 /* Edges from [begin, middle) to [middle, end) as a bipartite graph over its shores. */
 static void collect_cut(halver *d, int32_t begin, int32_t middle, int32_t end)
 {
-    int64_t edges = 0;
-    int32_t left_count = 0, right_count = 0;
+    sl_cut_begin(&d->cut);
     for (int32_t k = begin; k < middle; k++) {
-        const int64_t edges_before = edges;
+        const int64_t edges_before = d->cut.edges;
         for (int64_t p = d->first[k]; p < d->first[k + 1] && !d->taken[k]; p++) {
             const int32_t q = d->adj[p];
-            if (q < middle || q >= end || d->taken[q]) {
-                continue;
+            if (q >= middle && q < end && !d->taken[q]) {
+                sl_cut_add(&d->cut, q);
             }
-            if (d->right_id[q] == -1) {
-                d->right_id[q] = right_count;
-                d->right[right_count++] = q;
-            }
-            d->cut_adj[edges++] = d->right_id[q];
         }
-        if (edges > edges_before) {
-            d->cut_first[left_count] = edges_before;
-            d->left[left_count++] = k;
-        }
+        sl_cut_close(&d->cut, k, edges_before);
     }
-    d->cut_first[left_count] = edges;
-    for (int32_t r = 0; r < right_count; r++) {
-        d->right_id[d->right[r]] = -1;
-    }
-    d->cut.left_count = left_count;
-    d->cut.right_count = right_count;
+    sl_cut_cover(&d->cut);
 }
 
 /* Pushes the cover of the cut; returns its size. */
 static int32_t push_separator(halver *d)
 {
     const int32_t bottom = d->separator_top;
-    for (int32_t l = 0; l < d->cut.left_count; l++) {
-        if (d->cut.left_in[l]) {
-            d->separator[d->separator_top++] = d->left[l];
+    const sl_bipartite *shores = &d->cut.shores;
+    for (int32_t l = 0; l < shores->left_count; l++) {
+        if (shores->left_in[l]) {
+            d->separator[d->separator_top++] = d->cut.left[l];
         }
     }
-    for (int32_t r = 0; r < d->cut.right_count; r++) {
-        if (d->cut.right_in[r]) {
-            d->separator[d->separator_top++] = d->right[r];
+    for (int32_t r = 0; r < shores->right_count; r++) {
+        if (shores->right_in[r]) {
+            d->separator[d->separator_top++] = d->cut.right[r];
         }
     }
     return d->separator_top - bottom;
@@ -201,7 +235,6 @@ static void dissect(halver *d, int32_t begin, int32_t end)
         return;
     }
     collect_cut(d, begin, middle, end);
-    sl_minimum_vertex_cover(&d->cut);
     if (push_separator(d) > largest_separator * (end - begin)) {
         d->separator_top = bottom;
         list_leaf(d, begin, end);
@@ -226,56 +259,27 @@ static void halver_clear(halver *d)
     sl_free(d->first);
     sl_free(d->adj);
     sl_free(d->taken);
-    sl_free(d->left);
-    sl_free(d->right);
-    sl_free(d->right_id);
-    sl_free(d->cut_first);
-    sl_free(d->cut_adj);
     sl_free(d->separator);
-    sl_free(d->cut.left_mate);
-    sl_free(d->cut.right_mate);
-    sl_free(d->cut.level);
-    sl_free(d->cut.stack);
-    sl_free(d->cut.next);
-    sl_free(d->cut.left_in);
-    sl_free(d->cut.right_in);
+    sl_cut_clear(&d->cut);
 }
 
-/* A shore of the first cut may be half of all nodes. */
 static sl_status halver_init(halver *d, const sl_adjacency *graph, const double *xyz)
 {
-    const int64_t n = graph->n, half = n / 2 + 1, edges = graph->first[n];
+    const int64_t n = graph->n;
     d->n = graph->n;
     d->points = sl_alloc(n, sizeof *d->points);
     d->first = sl_alloc(n + 1, sizeof *d->first);
-    d->adj = sl_alloc(edges, sizeof *d->adj);
+    d->adj = sl_alloc(graph->first[n], sizeof *d->adj);
     d->taken = sl_calloc(n, sizeof *d->taken);
-    d->left = sl_alloc(half, sizeof *d->left);
-    d->right = sl_alloc(half, sizeof *d->right);
-    d->right_id = sl_alloc(n, sizeof *d->right_id);
-    d->cut_first = sl_alloc(half + 1, sizeof *d->cut_first);
-    d->cut_adj = sl_alloc(edges / 2, sizeof *d->cut_adj);
     d->separator = sl_alloc(n, sizeof *d->separator);
-    d->cut.left_mate = sl_alloc(half, sizeof *d->cut.left_mate);
-    d->cut.right_mate = sl_alloc(half, sizeof *d->cut.right_mate);
-    d->cut.level = sl_alloc(half, sizeof *d->cut.level);
-    d->cut.stack = sl_alloc(half, sizeof *d->cut.stack);
-    d->cut.next = sl_alloc(half, sizeof *d->cut.next);
-    d->cut.left_in = sl_alloc(half, sizeof *d->cut.left_in);
-    d->cut.right_in = sl_alloc(half, sizeof *d->cut.right_in);
-    if (d->points == NULL || d->first == NULL || d->adj == NULL || d->taken == NULL || d->left == NULL ||
-        d->right == NULL || d->right_id == NULL || d->cut_first == NULL || d->cut_adj == NULL || d->separator == NULL ||
-        d->cut.left_mate == NULL || d->cut.right_mate == NULL || d->cut.level == NULL || d->cut.stack == NULL ||
-        d->cut.next == NULL || d->cut.left_in == NULL || d->cut.right_in == NULL) {
+    if (d->points == NULL || d->first == NULL || d->adj == NULL || d->taken == NULL || d->separator == NULL) {
         return SL_OUT_OF_MEMORY;
     }
-    d->cut.first = d->cut_first;
-    d->cut.adj = d->cut_adj;
     for (int32_t i = 0; i < d->n; i++) {
         memcpy(d->points[i].x, xyz + 3 * (int64_t)i, sizeof d->points[i].x);
         d->points[i].node = i;
     }
-    return SL_OK;
+    return sl_cut_init(&d->cut, graph);
 }
 
 sl_status sl_dissect_points(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order)
@@ -285,7 +289,6 @@ sl_status sl_dissect_points(const sl_adjacency *graph, const double *xyz, int32_
     SL_TRY(halver_init(&d, graph, xyz));
     sort_into_halves(d.points, 0, d.n);
     renumber_graph(&d, graph, order); /* as room: it is written at the end */
-    memset(d.right_id, -1, (size_t)d.n * sizeof *d.right_id);
     dissect(&d, 0, d.n);
 cleanup:
     halver_clear(&d);

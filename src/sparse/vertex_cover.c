@@ -1,5 +1,7 @@
 #include "sparse/dissection.h"
 
+#include "base/memory.h"
+
 #include <string.h>
 
 static void match_greedily(sl_bipartite *g)
@@ -109,4 +111,57 @@ void sl_minimum_vertex_cover(sl_bipartite *g)
             g->right_in[g->adj[p]] = true;
         }
     }
+}
+
+sl_status sl_cut_init(sl_cut *cut, const sl_adjacency *graph)
+{
+    const int64_t n = graph->n, half = n / 2 + 1;
+    sl_bipartite *g = &cut->shores;
+    *cut = (sl_cut){0};
+    cut->left = sl_alloc(half, sizeof *cut->left);
+    cut->right = sl_alloc(half, sizeof *cut->right);
+    cut->right_id = sl_alloc(n, sizeof *cut->right_id);
+    cut->first = sl_alloc(half + 1, sizeof *cut->first);
+    cut->adj = sl_alloc(graph->first[n] / 2, sizeof *cut->adj);
+    g->left_mate = sl_alloc(half, sizeof *g->left_mate);
+    g->right_mate = sl_alloc(half, sizeof *g->right_mate);
+    g->level = sl_alloc(half, sizeof *g->level);
+    g->stack = sl_alloc(half, sizeof *g->stack);
+    g->next = sl_alloc(half, sizeof *g->next);
+    g->left_in = sl_alloc(half, sizeof *g->left_in);
+    g->right_in = sl_alloc(half, sizeof *g->right_in);
+    g->first = cut->first;
+    g->adj = cut->adj;
+    if (cut->left == NULL || cut->right == NULL || cut->right_id == NULL || cut->first == NULL || cut->adj == NULL ||
+        g->left_mate == NULL || g->right_mate == NULL || g->level == NULL || g->stack == NULL || g->next == NULL ||
+        g->left_in == NULL || g->right_in == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    memset(cut->right_id, -1, (size_t)n * sizeof *cut->right_id);
+    return SL_OK;
+}
+
+void sl_cut_clear(sl_cut *cut)
+{
+    sl_free(cut->left);
+    sl_free(cut->right);
+    sl_free(cut->right_id);
+    sl_free(cut->first);
+    sl_free(cut->adj);
+    sl_free(cut->shores.left_mate);
+    sl_free(cut->shores.right_mate);
+    sl_free(cut->shores.level);
+    sl_free(cut->shores.stack);
+    sl_free(cut->shores.next);
+    sl_free(cut->shores.left_in);
+    sl_free(cut->shores.right_in);
+}
+
+void sl_cut_cover(sl_cut *cut)
+{
+    cut->first[cut->shores.left_count] = cut->edges;
+    for (int32_t r = 0; r < cut->shores.right_count; r++) {
+        cut->right_id[cut->right[r]] = -1;
+    }
+    sl_minimum_vertex_cover(&cut->shores);
 }
