@@ -41,7 +41,7 @@ typedef struct packer {
 
 sl_pack_def sl_pack_default(void)
 {
-    return (sl_pack_def){.resolution = 2048, .margin = 4.0, .rotations = 4};
+    return (sl_pack_def){.resolution = 2048, .margin = 4.0, .rotations = 4, .turns = 1};
 }
 
 static double chart_area(const sl_pack_chart *chart)
@@ -232,6 +232,32 @@ static sl_status search_scale(packer *p, double area, const sl_context *context,
     return SL_OK;
 }
 
+/* The search with the largest chart turned a little each time. */
+static sl_status search_turns(packer *p, double area, const sl_context *context, sl_placement *placement,
+                              sl_pack_info *info, double *scale)
+{
+    const int32_t turns = p->def->turns > 1 ? p->def->turns : 1;
+    int32_t largest = 0;
+    for (int32_t c = 1; c < p->count; c++) {
+        largest = p->area[c] > p->area[largest] ? c : largest;
+    }
+    for (int32_t turn = 0; turn < turns; turn++) {
+        double found = 0.0;
+        const sl_status status = search_scale(p, area, context, info, &found);
+        if (status != SL_OK) {
+            return status;
+        }
+        if (p->count > 0 && (turn == 0 || found > *scale)) {
+            memcpy(placement, p->best_place, (size_t)p->count * sizeof *placement);
+            *scale = found;
+        }
+        if (p->count > 0) {
+            p->angle[largest] += 0.25 * two_pi / turns;
+        }
+    }
+    return SL_OK;
+}
+
 sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def *def, const sl_context *context,
                   sl_placement *placement, sl_pack_info *info)
 {
@@ -244,10 +270,7 @@ sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def 
     for (int32_t c = 0; c < count; c++) {
         area += p.area[c];
     }
-    SL_TRY(search_scale(&p, area, context, info, &scale));
-    if (count > 0) {
-        memcpy(placement, p.best_place, (size_t)count * sizeof *placement);
-    }
+    SL_TRY(search_turns(&p, area, context, placement, info, &scale));
     info->scale = scale / p.horizon.side;
     info->fill = area * info->scale * info->scale;
 cleanup:

@@ -22,6 +22,8 @@ typedef struct sl_pack_def {
     int32_t resolution; /* texels a side; default 2048 */
     double margin;      /* least distance between charts [texels]; half of it to the page's edge; default 4 */
     int32_t rotations;  /* orientations tried a chart besides its minimum-area rectangle's; default 4 (by 90 degrees) */
+    int32_t turns;      /* the largest chart is also turned by this many parts of a quarter, the whole packing done anew
+                           each time and the largest scale kept: for few, large charts; default 1, as is 0 */
 } sl_pack_def;
 
 sl_pack_def sl_pack_default(void);

@@ -101,7 +101,7 @@ contains out.txt '^vt '
 
 # --- warnings, --strict, and a cap that leaves nothing to deliver
 expect 0 "$seamlab" demo --model sphere -o ball --quiet
-few='--max-charts 2 --max-stretch 1.01 --sew off --minimise off'
+few='--max-charts 2 --max-stretch 1.01 --sew off --minimise off --symmetry off'
 expect 0 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few
 contains err.txt 'warning: chart'
 contains capped.atlas.json 'above the bound'
@@ -109,6 +109,42 @@ expect 4 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few --strict
 expect 6 "$seamlab" unwrap ball/sphere.obj -o never.obj --max-charts 1
 contains err.txt 'max-charts'
 no_file never.obj never.atlas.json
+
+# --- symmetry: shared where exact, by default; declared in the sidecar, and only there no overlap
+expect 0 "$seamlab" demo --model body -o body --quiet
+for n in 1 2; do
+    expect 0 "$seamlab" unwrap body/body.obj -o shared$n.obj --threads $n
+    contains err.txt 'share their texture: 50 %'
+done
+cmp -s shared1.obj shared2.obj && cmp -s shared1.atlas.json shared2.atlas.json || complain "sharing: other bytes with 2 threads"
+contains shared1.atlas.json '"schema": 2'
+contains shared1.atlas.json '"mirrored":true,"kind":"exact"'
+contains shared1.atlas.json '"texture_memory_saved":0.5'
+json shared1.atlas.json
+expect 0 "$seamlab" measure shared1.obj
+contains out.txt 'flipped 0 .*overlap inside 0.00000, across 0.00000'
+contains out.txt 'charts are copies'
+cp shared1.obj orphan.obj
+expect 0 "$seamlab" measure orphan.obj --json
+contains out.txt '"copies":0'
+! grep -q '"ovIn":0.0,' out.txt || complain "without its sidecar a shared atlas measures as free of overlap"
+cp uv1.atlas.json orphan.atlas.json
+expect 0 "$seamlab" measure orphan.obj
+contains err.txt 'another number of facets'
+for options in '--symmetry off' '--unshare'; do
+    expect 0 "$seamlab" unwrap body/body.obj -o apart.obj $options --json
+    contains out.txt '"copies":0'
+    rm apart.atlas.json
+    expect 0 "$seamlab" measure apart.obj
+    contains out.txt 'flipped 0 .*overlap inside 0.00000, across 0.00000'
+done
+expect 0 "$seamlab" unwrap body/body.obj -o halves.obj --preset paper --json
+contains halves.atlas.json '"symmetry":"halves"'
+expect 0 "$seamlab" unwrap $mesh -o lone.obj --symmetry exact
+contains err.txt 'no exact symmetry'
+expect 4 "$seamlab" unwrap $mesh -o lone.obj --symmetry exact --strict
+expect 2 "$seamlab" unwrap $mesh -o lone.obj --symmetry perfect
+contains err.txt 'auto|off|exact|near'
 
 # --- measure
 expect 0 "$seamlab" measure uv1.obj

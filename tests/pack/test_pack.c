@@ -200,6 +200,32 @@ static void charts_that_would_shrink_to_points_are_infeasible(void **state)
     free(set);
 }
 
+/* A bar across the page's diagonal is longer than one along its side. */
+static void turning_the_largest_chart_finds_larger_scales(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x7a21);
+    const double uv[] = {0, 0, 3.0, 0.1, 3.0, 0.4, 0.1, 0.3};
+    const int32_t tri[] = {0, 1, 2, 0, 2, 3};
+    const sl_pack_chart bar = {4, 2, uv, tri};
+    sl_pack_def def = sl_pack_default();
+    sl_placement place[MAX_CHARTS];
+    sl_pack_info plain, turned;
+    assert_int_equal(sl_pack(1, &bar, &def, NULL, place, &plain), SL_OK);
+    def.turns = 6;
+    assert_int_equal(sl_pack(1, &bar, &def, NULL, place, &turned), SL_OK);
+    assert_true(turned.scale > 1.2 * plain.scale && turned.attempts > 3 * plain.attempts);
+    for (int trial = 0; trial < 5 * test_multiplier(); trial++) {
+        chart_set *set = random_charts(&rng, 5);
+        def.turns = 1;
+        assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &plain), SL_OK);
+        def.turns = 4;
+        assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &turned), SL_OK);
+        assert_true(turned.scale >= plain.scale);
+        free(set);
+    }
+}
+
 /* Area alone is no bound for a needle: the search must start where its length fits. */
 static void a_needle_is_packed_at_the_length_of_the_page(void **state)
 {
@@ -255,6 +281,7 @@ int main(void)
         cmocka_unit_test(charts_without_area_get_a_texel_each),
         cmocka_unit_test(too_many_charts_for_the_page_are_infeasible),
         cmocka_unit_test(charts_that_would_shrink_to_points_are_infeasible),
+        cmocka_unit_test(turning_the_largest_chart_finds_larger_scales),
         cmocka_unit_test(a_needle_is_packed_at_the_length_of_the_page),
         cmocka_unit_test(a_uv_that_is_not_finite_is_bad_input),
         cmocka_unit_test(packing_can_be_cancelled),
