@@ -246,6 +246,29 @@ static void roughening_keeps_the_surface_and_changes_its_triangles(void **state)
     }
 }
 
+/* As much along the normal as announced: a third of reach^2 there, a sixth across it. */
+static void noise_is_larger_along_the_normal_than_across(void **state)
+{
+    (void)state;
+    sl_rng rng = sl_rng_seed(11), again = sl_rng_seed(11);
+    gen_builder plain = rough_ball(&rng, 2, 0.0), b = rough_ball(&again, 2, 0.1);
+    double along = 0.0, all = 0.0;
+    for (int64_t v = 0; v < b.nv; v++) {
+        const double *p = plain.xyz + 3 * v, *q = b.xyz + 3 * v;
+        const double n[3] = {p[0], p[1] / (1.3 * 1.3), p[2] / (0.8 * 0.8)}; /* of the ellipsoid */
+        double dot = 0.0, norm = 0.0;
+        for (int k = 0; k < 3; k++) {
+            dot += (q[k] - p[k]) * n[k];
+            norm += n[k] * n[k];
+            all += (q[k] - p[k]) * (q[k] - p[k]);
+        }
+        along += dot * dot / norm;
+    }
+    assert_true(test_near(along / all, 2.0 / 3.0, 0.05));
+    gen_clear(&plain);
+    gen_clear(&b);
+}
+
 static void a_builder_that_failed_stays_failed_and_is_refused(void **state)
 {
     (void)state;
@@ -279,6 +302,7 @@ int main(void)
         cmocka_unit_test(blocks_become_their_surface),
         cmocka_unit_test(relaxing_takes_steps_out_and_leaves_heights_alone),
         cmocka_unit_test(roughening_keeps_the_surface_and_changes_its_triangles),
+        cmocka_unit_test(noise_is_larger_along_the_normal_than_across),
         cmocka_unit_test(a_builder_that_failed_stays_failed_and_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
