@@ -200,9 +200,9 @@ sl_status sl_vsa_partition(const sl_vsa_surface *surface, const sl_vsa_def *def,
     sl_vsa vsa = {0};
     SL_TRY(sl_vsa_create(surface, &vsa));
     SL_TRY(add_regions(&vsa, def, context));
-    sl_vsa_relax(&vsa);
+    SL_TRY(sl_vsa_relax(&vsa, context));
     SL_TRY(sl_report_progress(context, "proxies", 1.0));
-    SL_TRY(sl_vsa_teleport(&vsa));
+    SL_TRY(sl_vsa_teleport(&vsa, context));
     if (def->regions <= 0) {
         SL_TRY(sl_vsa_merge_within(&vsa, def->error * vsa.total, LEAST_REGIONS));
     }

@@ -147,24 +147,26 @@ void sl_vsa_grow(sl_vsa *vsa)
     sl_vsa_fit(vsa);
 }
 
-void sl_vsa_relax(sl_vsa *vsa)
+sl_status sl_vsa_relax(sl_vsa *vsa, const sl_context *context)
 {
     const size_t regions = (size_t)vsa->surface.graph->n * sizeof *vsa->region;
     const size_t proxies = (size_t)vsa->count * sizeof *vsa->proxy;
-    for (int32_t sweep = 0; sweep < SWEEPS; sweep++) {
+    sl_status status = SL_OK;
+    for (int32_t sweep = 0; sweep < SWEEPS && status == SL_OK; sweep++) {
         const double energy = vsa->energy;
         memcpy(vsa->kept, vsa->region, regions);
         memcpy(vsa->kept_proxy, vsa->proxy, proxies);
         sl_vsa_reseed(vsa);
         sl_vsa_grow(vsa);
-        if (vsa->energy < (1.0 - SETTLED_RTOL) * energy) {
-            continue;
-        }
         if (vsa->energy >= energy) {
             memcpy(vsa->region, vsa->kept, regions);
             memcpy(vsa->proxy, vsa->kept_proxy, proxies);
             vsa->energy = energy;
         }
-        return;
+        if (vsa->energy >= (1.0 - SETTLED_RTOL) * energy) {
+            break;
+        }
+        status = sl_report_progress(context, "proxies", 1.0);
     }
+    return status;
 }

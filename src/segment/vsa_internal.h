@@ -78,8 +78,8 @@ void sl_vsa_grow(sl_vsa *vsa);
 /* Seeds of the next growth: in each region the node that fits best. */
 void sl_vsa_reseed(sl_vsa *vsa);
 
-/* Reseeds and grows while that lowers the energy; ends with the best partition seen, fitted. */
-void sl_vsa_relax(sl_vsa *vsa);
+/* Reseeds and grows while that lowers the energy; ends with the best partition seen, fitted. SL_CANCELLED. */
+SL_NODISCARD sl_status sl_vsa_relax(sl_vsa *vsa, const sl_context *context);
 
 /* Adds up to `wanted` regions, each in another of those with the largest errors and more than one node, at the node
  * that fits worst. *inserted = how many. To be fitted and grown. SL_OUT_OF_MEMORY. O(nodes + wanted * regions). */
@@ -100,8 +100,8 @@ SL_NODISCARD sl_status sl_vsa_cheapest_merge(const sl_vsa *vsa, int32_t *a, int3
 SL_NODISCARD sl_status sl_vsa_merge_within(sl_vsa *vsa, double bound, int32_t least);
 
 /* Moves regions: the two cheapest to merge are merged and the worst is split, while that lowers the energy.
- * SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_vsa_teleport(sl_vsa *vsa);
+ * SL_OUT_OF_MEMORY, SL_CANCELLED. */
+SL_NODISCARD sl_status sl_vsa_teleport(sl_vsa *vsa, const sl_context *context);
 
 /* How many regions. */
 typedef struct sl_vsa_def {

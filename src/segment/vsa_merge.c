@@ -111,7 +111,7 @@ sl_status sl_vsa_merge_within(sl_vsa *vsa, double bound, int32_t least)
 }
 
 /* One move, if it seems worth trying: *tried. */
-static sl_status move_region(sl_vsa *vsa, bool *tried)
+static sl_status move_region(sl_vsa *vsa, const sl_context *context, bool *tried)
 {
     int32_t a = -1, b = -1;
     double cost = 0.0;
@@ -124,9 +124,8 @@ static sl_status move_region(sl_vsa *vsa, bool *tried)
     relabel(vsa, b, a);
     sl_vsa_split_off(vsa, worst, b);
     sl_vsa_fit(vsa);
-    sl_vsa_relax(vsa);
     *tried = true;
-    return SL_OK;
+    return sl_vsa_relax(vsa, context);
 }
 
 /**
@@ -135,10 +134,10 @@ static sl_status move_region(sl_vsa *vsa, bool *tried)
  * The two neighbours whose union costs least are merged, the worst region is split, everything is relaxed; kept where
  * the energy is lower by a thousandth. Out of local minima that sweeps cannot leave.
  *
- * SL_OUT_OF_MEMORY. At most eight moves, each a few sweeps.
+ * SL_OUT_OF_MEMORY, SL_CANCELLED. At most eight moves, each a few sweeps.
  * Source: Cohen-Steiner, Alliez, Desbrun 2004, Sec. 3.5 (region teleportation).
  */
-sl_status sl_vsa_teleport(sl_vsa *vsa)
+sl_status sl_vsa_teleport(sl_vsa *vsa, const sl_context *context)
 {
     sl_status status = SL_OK;
     const int32_t n = vsa->surface.graph->n;
@@ -150,7 +149,7 @@ sl_status sl_vsa_teleport(sl_vsa *vsa)
         const double energy = vsa->energy;
         memcpy(region, vsa->region, (size_t)n * sizeof *region);
         memcpy(proxy, vsa->proxy, (size_t)vsa->count * sizeof *proxy);
-        SL_TRY(move_region(vsa, &tried));
+        SL_TRY(move_region(vsa, context, &tried));
         if (tried && vsa->energy >= (1.0 - WORTH_RTOL) * energy) {
             memcpy(vsa->region, region, (size_t)n * sizeof *region);
             memcpy(vsa->proxy, proxy, (size_t)vsa->count * sizeof *proxy);
