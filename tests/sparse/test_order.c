@@ -160,6 +160,25 @@ static void dissection_halves_a_grid_by_a_small_separator(void **state)
     }
 }
 
+/* Monotone maps of the coordinates leave halves as they are, though nearly all points fall into one slice of the
+ * extent, or the extent itself is no number. */
+static void halves_do_not_depend_on_how_points_are_spread(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x59ead);
+    for (int map = 0; map < 5; map++) {
+        grid g = grid_create(50, 1, false, &rng);
+        for (int32_t k = 0; k < 3 * g.n; k++) {
+            const double x = g.xyz[k] / g.side;
+            const double spread[] = {exp(30.0 * x), x * x * x * 1e300, x * 1e-310, -exp(-300.0 * x),
+                                     1.5e308 * (2.0 * x - 1.0)};
+            g.xyz[k] = k % 3 == 2 ? 0.0 : spread[map];
+        }
+        check_top_separator(&g, g.xyz, 1.6);
+        grid_clear(&g);
+    }
+}
+
 static void dissection_fills_a_grid_little_more_than_minimum_degree(void **state)
 {
     (void)state;
@@ -500,6 +519,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_ordering_is_a_permutation),
         cmocka_unit_test(dissection_halves_a_grid_by_a_small_separator),
+        cmocka_unit_test(halves_do_not_depend_on_how_points_are_spread),
         cmocka_unit_test(dissection_fills_a_grid_little_more_than_minimum_degree),
         cmocka_unit_test(ordered_leaves_are_the_same_leaves),
         cmocka_unit_test(leaves_that_are_trees_are_eliminated_from_their_ends),
