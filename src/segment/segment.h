@@ -42,15 +42,15 @@ typedef struct sl_segment_def {
                                  its halves are isomorphic; default false */
     bool unshare;             /* copies are laid out too, turned the right way round; default false */
     sl_cut_rule rule;
-    int32_t vectors;    /* eigenvectors computed a cut; default 30 */
-    sl_pairing pairing; /* triangles back into quads in the facet graph; default auto */
-    int32_t smooth;     /* dual rings of the band minimum cut, 0 = off; default 2 */
-    bool join;          /* genus-0 charts with several borders: loops joined by shortest paths; default true */
-    bool sew;           /* merge neighbours while they stay valid; default true */
-    double sew_stretch; /* L2 bound of a merged chart; default 1.25 */
-    bool protect_first; /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
-    int32_t max_charts; /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
-                           reported; default 100000 */
+    int32_t vectors;      /* eigenvectors computed a cut; default 30 */
+    sl_pairing pairing;   /* triangles back into quads in the facet graph; default auto */
+    int32_t smooth;       /* dual rings of the band minimum cut, 0 = off; default 2 */
+    bool join;            /* genus-0 charts with several borders: loops joined by shortest paths; default true */
+    bool sew;             /* merge neighbours while they stay valid; default true */
+    double sew_stretch;   /* L2 bound of a merged chart; default 1.25 */
+    bool protect_first;   /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
+    int32_t max_charts;   /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
+                             reported; default 100000 */
     int64_t memory_limit; /* bytes that one eigensolve, its matrix and results may take; 0 = none; default 0 */
     sl_flatten_def flatten;
 } sl_segment_def;
