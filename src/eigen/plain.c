@@ -58,28 +58,35 @@ static double estimate_worst(const sl_lanczos *s)
     return worst;
 }
 
-/* X := the leading Ritz vectors; the basis is spent. What rounding left in those of a single basis an inverse iteration
- * takes out. */
+/* X := the leading Ritz vectors, in the basis's own memory, which is spent. */
 static sl_status make_vectors(sl_lanczos *s)
 {
+    sl_panels narrow = {.rows = 0};
     sl_status status = SL_OK;
     sl_panels_clear(&s->X);
-    if (s->precision == SL_DOUBLE) {
-        SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, s->columns, NULL));
-        SL_TRY(sl_panels_take(&s->krylov.Q, s->columns, &s->X));
-    } else {
-        SL_TRY(sl_panels_create(s->n, s->columns, SL_DOUBLE, &s->X));
-        SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, s->columns, &s->X));
-    }
+    SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, s->columns, NULL));
+    SL_TRY(sl_panels_take(&s->krylov.Q, s->columns, s->precision == SL_SINGLE ? &narrow : &s->X));
     sl_krylov_clear(&s->krylov);
     s->krylov_live = false;
-    for (int32_t p = 0; p < sl_panel_count(s->columns) && s->precision == SL_SINGLE; p++) {
+    if (s->precision == SL_SINGLE) {
+        SL_TRY(sl_panels_create(s->n, s->columns, SL_DOUBLE, &s->X));
+        for (int32_t k = 0; k < s->columns; k += SL_PANEL) {
+            sl_panels_load(&narrow, k, sl_panel_at(&s->X, k / SL_PANEL), SL_PANEL);
+        }
+    }
+cleanup:
+    sl_panels_clear(&narrow);
+    return status;
+}
+
+/* What rounding left in vectors of single precision an inverse iteration takes out. */
+static void clean_vectors(sl_lanczos *s)
+{
+    for (int32_t p = 0; p < sl_panel_count(s->columns); p++) {
         sl_lanczos_deflate(s, sl_panel_at(&s->X, p));
         sl_lanczos_apply(s, sl_panel_at(&s->X, p), SL_PANEL);
     }
-    s->info.iterations += s->precision == SL_SINGLE;
-cleanup:
-    return status;
+    s->info.iterations++;
 }
 
 /* X := the leading Ritz vectors. The basis makes way for them, or stays for more. */
@@ -90,6 +97,9 @@ static sl_status take_vectors(sl_lanczos *s, bool basis_stays)
         SL_TRY(sl_krylov_vectors(&s->krylov, s->columns, s->columns, &s->X));
     } else {
         SL_TRY(make_vectors(s));
+        if (s->precision == SL_SINGLE) {
+            clean_vectors(s);
+        }
     }
     for (int32_t p = 0; p < sl_panel_count(s->columns); p++) { /* the last block was projected once only */
         sl_lanczos_deflate(s, sl_panel_at(&s->X, p));

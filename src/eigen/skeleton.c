@@ -11,7 +11,7 @@
 /* Ritz pairs of the skeleton go on to the whole matrix when ||OP x - theta x|| is below a share of theta: half of what
  * the mode allows ||A v - lambda v|| / lambda, for one inverse iteration hands such an error on nearly undiminished,
  * but between these, where the condensation's own error rules. */
-static const double least_tolerance = 1e-4, most_tolerance = 2e-3, tolerance_share = 0.5;
+static const double least_tolerance = 5e-5, most_tolerance = 2e-3, tolerance_share = 0.5;
 
 /* A null vector that has less than this length on the separators is left out: a component inside one patch. */
 static const double least_null_length = 1e-8;
