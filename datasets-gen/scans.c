@@ -108,7 +108,7 @@ static void add_foot_and_head(gen_cage *cage)
                                        {{0.0, 15.95, 0.22}, 0.88, 1.06},  {{0.0, 16.55, 0.20}, 1.04, 1.22},
                                        {{0.0, 17.25, 0.10}, 1.10, 1.30},  {{0.0, 17.95, 0.02}, 0.96, 1.12},
                                        {{0.0, 18.30, 0.00}, 0.52, 0.62}};
-    static const gen_station nose[] = {{{0.0, 16.88, 1.36}, 0.22, 0.34}, {{0.0, 16.70, 1.62}, 0.20, 0.17}};
+    static const gen_station nose[] = {{{0.0, 16.92, 1.36}, 0.17, 0.34}, {{0.0, 16.74, 1.54}, 0.20, 0.17}};
     static const gen_station ear[] = {{{1.20, 16.85, -0.02}, 0.26, 0.34}, {{1.34, 16.90, -0.12}, 0.22, 0.34}};
     const int32_t below[4] = {gen_cage_nearest(cage, 0.2, 11.3, -0.4), gen_cage_nearest(cage, 0.2, 11.3, 0.4),
                               gen_cage_nearest(cage, 0.6, 11.3, -0.4), gen_cage_nearest(cage, 0.6, 11.3, 0.4)};
@@ -118,6 +118,32 @@ static void add_foot_and_head(gen_cage *cage)
     const int32_t face = gen_cage_nearest(cage, 0.35, 16.9, 1.25), temple = gen_cage_nearest(cage, 1.1, 16.9, -0.3);
     gen_cage_limb(cage, &face, 1, side, nose, (int32_t)SL_COUNTOF(nose));
     gen_cage_limb(cage, &temple, 1, (const double[]){0.0, 0.0, 1.0}, ear, (int32_t)SL_COUNTOF(ear));
+}
+
+/* A dent or bump of the face, on both sides: middle, reach across and upright, how far forward. */
+typedef struct feature {
+    double x, y, wide, high, forward;
+} feature;
+
+static void shape_face(gen_builder *b)
+{
+    static const feature face[] = {
+        {0.42, 17.02, 0.26, 0.17, -0.26},                                  /* sockets */
+        {0.43, 17.03, 0.15, 0.10, 0.16},                                   /* eyes */
+        {0.42, 17.32, 0.34, 0.12, 0.09},                                   /* brows */
+        {0.00, 16.22, 0.34, 0.06, -0.13},                                  /* mouth */
+        {0.00, 16.36, 0.22, 0.07, 0.08},                                   /* lips */
+        {0.00, 16.08, 0.22, 0.07, 0.09},  {0.00, 15.74, 0.28, 0.16, 0.16}, /* chin */
+        {0.62, 16.55, 0.24, 0.22, 0.07},                                   /* cheeks */
+    };
+    for (int64_t v = 0; v < b->nv && !b->failed; v++) {
+        double *p = b->xyz + 3 * v, move = 0.0;
+        for (size_t k = 0; k < SL_COUNTOF(face) && p[2] > 0.3 && p[1] > 15.0; k++) {
+            const double s = (fabs(p[0]) - face[k].x) / face[k].wide, t = (p[1] - face[k].y) / face[k].high;
+            move += face[k].forward * exp(-s * s - t * t);
+        }
+        p[2] += move * fmin(1.0, fmax(0.0, 2.0 * (p[2] - 0.3)));
+    }
 }
 
 sl_status gen_bust(uint64_t seed, int32_t scale, sl_generated **out)
@@ -139,6 +165,7 @@ sl_status gen_bust(uint64_t seed, int32_t scale, sl_generated **out)
     }
     gen_append(&b, smooth, here);
     sl_generated_free(smooth);
+    shape_face(&b);
     gen_split_quads(&b, &rng);
     gen_flip_edges(&b, &rng, 3);
     gen_add_noise(&b, &rng, 0.09);
