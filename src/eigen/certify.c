@@ -17,8 +17,10 @@ static const double reaches[] = {4e-6, 1e-4, 1e-2};
 /* A count above a cluster at zero looks this share of ||A|| up. */
 static const double zero_reach = 1e-10;
 
-/* Shares of the gap at which sigma is tried. */
-static const double shares[] = {0.5, 0.3, 0.7, 0.9};
+/* Shares of the gap at which sigma is tried. Beyond the first by the golden section: where eigenvalues are whole
+ * numbers (a complete graph) a rational sigma meets one of a leading block exactly, and elimination without pivoting
+ * grows. */
+static const double shares[] = {0.5, 0.3090169943749474, 0.7236067977499790, 0.9045084971874737};
 
 /* The value from which gaps are measured: no smaller than rounding leaves a zero. */
 static double gap_scale(const sl_lanczos *s, double lambda)

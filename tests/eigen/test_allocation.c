@@ -73,6 +73,11 @@ static void every_refused_allocation_is_survived(void **state)
     def.count = 12;
     survive_all(torus, &def); /* larger blocks */
     sl_free(ones);
+    ones = constant_vector(torus->ncols);
+    def.null_space = ones;
+    def.null_count = 1;
+    survive_all(torus, &def); /* a basis of single precision, and again in double */
+    sl_free(ones);
     sl_csc_free(A);
     sl_csc_free(torus);
     sl_csc_free(small);
