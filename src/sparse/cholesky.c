@@ -71,7 +71,7 @@ static sl_status find_permutation(const sl_csc *A, const sl_cholesky_def *def, i
         memcpy(perm, def->perm, (size_t)A->ncols * sizeof *perm);
         return SL_OK;
     }
-    return sl_order(A, def->ordering, def->xyz, perm);
+    return sl_order_with(A, def->ordering, def->xyz, def->context, perm);
 }
 
 /* perm = perm after order; place follows. spare: n. */

@@ -24,6 +24,7 @@ typedef struct sl_cholesky_def {
     sl_factor_kind kind;  /* default SL_FACTOR_LLT */
     int32_t patch;        /* subtrees of at most so many columns are the bottom part, eliminated before all of the top;
                              default 0 = no bottom part */
+    const sl_context *context; /* workers for the ordering; borrowed; default NULL */
 } sl_cholesky_def;
 
 sl_cholesky_def sl_cholesky_default(void);

@@ -19,6 +19,10 @@ typedef struct point {
     int32_t node;
 } point;
 
+typedef struct range {
+    int32_t begin, end;
+} range;
+
 typedef struct halver {
     int32_t n;
     point *points;      /* in the order of the halves */
@@ -157,6 +161,53 @@ static void sort_into_halves(point *points, int32_t begin, int32_t end)
     }
 }
 
+/* From this depth on halves are sorted side by side, each as a whole. */
+enum { SHARED_LEVELS = 4 };
+
+typedef struct halves_job {
+    point *points;
+    int32_t n, level;
+} halves_job;
+
+/* Range t of those at the job's level. */
+static range range_at(const halves_job *job, int32_t t)
+{
+    range r = {0, job->n};
+    for (int32_t bit = job->level - 1; bit >= 0; bit--) {
+        const int32_t middle = half_of_range(r.begin, r.end);
+        if ((t >> bit & 1) != 0) {
+            r.begin = middle;
+        } else {
+            r.end = middle;
+        }
+    }
+    return r;
+}
+
+static void halve_one(void *user, int64_t begin, int64_t end, int32_t t)
+{
+    (void)begin, (void)end;
+    const halves_job *job = user;
+    const range r = range_at(job, t);
+    if (r.end - r.begin <= leaf_size) {
+        return;
+    }
+    if (job->level == SHARED_LEVELS) {
+        sort_into_halves(job->points, r.begin, r.end);
+    } else {
+        halve(job->points + r.begin, r.end - r.begin, half_of_range(r.begin, r.end) - r.begin);
+    }
+}
+
+/* sort_into_halves of all points; each level waits for the one above. */
+static void sort_all(point *points, int32_t n, const sl_context *context)
+{
+    for (int32_t level = 0; level <= SHARED_LEVELS; level++) {
+        halves_job job = {points, n, level};
+        sl_parallel_for(context, (int64_t)1 << level, 1, halve_one, &job);
+    }
+}
+
 /* The graph by positions; place: n, the position of each node. */
 static void renumber_graph(halver *d, const sl_adjacency *graph, int32_t *place)
 {
@@ -282,12 +333,13 @@ static sl_status halver_init(halver *d, const sl_adjacency *graph, const double 
     return sl_cut_init(&d->cut, graph);
 }
 
-sl_status sl_dissect_points(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order)
+sl_status sl_dissect_points(const sl_adjacency *graph, const double *xyz, const sl_context *context, int32_t *piece,
+                            int32_t *order)
 {
     halver d = {.piece = piece, .order = order};
     sl_status status = SL_OK;
     SL_TRY(halver_init(&d, graph, xyz));
-    sort_into_halves(d.points, 0, d.n);
+    sort_all(d.points, d.n, context);
     renumber_graph(&d, graph, order); /* as room: it is written at the end */
     dissect(&d, 0, d.n);
 cleanup:

@@ -116,31 +116,75 @@ static int32_t eliminate(leaf *f, int32_t v, int32_t *order, int32_t placed)
     return placed;
 }
 
-sl_status sl_order_leaves(const sl_adjacency *graph, const int32_t *piece, int32_t *order, bool *complete)
+/* Chunks of the pieces that are worked on side by side: a fixed number, as each needs room for all nodes' numbers. */
+enum { CHUNKS = 8 };
+
+typedef struct leaves_job {
+    const sl_adjacency *graph;
+    const int32_t *piece;
+    int32_t *order;
+    int32_t pieces;
+    int32_t *first; /* pieces + 1: where they begin in order */
+    bool complete[CHUNKS];
+    sl_status status[CHUNKS];
+} leaves_job;
+
+static sl_status find_pieces(leaves_job *job)
 {
-    const int32_t n = graph->n;
-    leaf *f = sl_alloc(1, sizeof *f);
-    sl_status status = SL_OK;
-    *complete = true;
-    SL_TRY(f != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    f->graph = graph;
-    f->local = sl_alloc(n, sizeof *f->local);
-    SL_TRY(f->local != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    memset(f->local, -1, (size_t)n * sizeof *f->local);
-    for (int32_t begin = 0, end; begin < n; begin = end) {
-        bool separates = false; /* a separator has neighbours that go before it: it stays as it is */
-        for (end = begin; end < n && piece[order[end]] == piece[order[begin]]; end++) {
-            for (int64_t p = graph->first[order[end]]; p < graph->first[order[end] + 1]; p++) {
-                separates = separates || piece[graph->adj[p]] < piece[order[end]];
+    const int32_t n = job->graph->n;
+    job->pieces = n > 0 ? job->piece[job->order[n - 1]] + 1 : 0;
+    job->first = sl_calloc((int64_t)job->pieces + 1, sizeof *job->first);
+    if (job->first == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t i = 0; i < n; i++) {
+        job->first[job->piece[i] + 1]++;
+    }
+    for (int32_t k = 0; k < job->pieces; k++) {
+        job->first[k + 1] += job->first[k];
+    }
+    return SL_OK;
+}
+
+/* Do some of its neighbours go before it? Then it is no leaf. */
+static bool separates(const leaves_job *job, int32_t k)
+{
+    const sl_adjacency *graph = job->graph;
+    for (int32_t at = job->first[k]; at < job->first[k + 1]; at++) {
+        const int32_t v = job->order[at];
+        for (int64_t p = graph->first[v]; p < graph->first[v + 1]; p++) {
+            if (job->piece[graph->adj[p]] < k) {
+                return true;
             }
         }
-        if (separates || end - begin > LARGEST_LEAF) {
-            *complete = *complete && separates;
+    }
+    return false;
+}
+
+/* Separators stay as they are. */
+static void order_some(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    leaves_job *job = user;
+    leaf *f = sl_alloc(1, sizeof *f);
+    sl_status status = SL_OK;
+    SL_TRY(f != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    f->graph = job->graph;
+    f->local = sl_alloc(job->graph->n, sizeof *f->local);
+    SL_TRY(f->local != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    memset(f->local, -1, (size_t)job->graph->n * sizeof *f->local);
+    for (int32_t k = (int32_t)begin; k < end; k++) {
+        int32_t *order = job->order + job->first[k];
+        const int32_t size = job->first[k + 1] - job->first[k];
+        if (separates(job, k)) {
             continue;
         }
-        load_leaf(f, order + begin, end - begin);
-        for (int32_t placed = 0; placed < end - begin;) {
-            placed = eliminate(f, least_degree(f), order + begin, placed);
+        if (size > LARGEST_LEAF) {
+            job->complete[chunk] = false;
+            continue;
+        }
+        load_leaf(f, order, size);
+        for (int32_t placed = 0; placed < size;) {
+            placed = eliminate(f, least_degree(f), order, placed);
         }
     }
 cleanup:
@@ -148,5 +192,23 @@ cleanup:
         sl_free(f->local);
     }
     sl_free(f);
+    job->status[chunk] = status;
+}
+
+sl_status sl_order_leaves(const sl_adjacency *graph, const int32_t *piece, const sl_context *context, int32_t *order,
+                          bool *complete)
+{
+    leaves_job job = {.graph = graph, .piece = piece, .order = order};
+    sl_status status = SL_OK;
+    memset(job.complete, true, sizeof job.complete);
+    SL_TRY(find_pieces(&job));
+    sl_parallel_for(context, job.pieces, job.pieces / CHUNKS + 1, order_some, &job);
+    *complete = true;
+    for (int32_t c = 0; c < CHUNKS; c++) {
+        SL_TRY(job.status[c]);
+        *complete = *complete && job.complete[c];
+    }
+cleanup:
+    sl_free(job.first);
     return status;
 }

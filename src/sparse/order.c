@@ -74,14 +74,15 @@ static bool all_finite(const double *x, int64_t count)
     return true;
 }
 
-static sl_status order_by_dissection(const sl_adjacency *graph, const double *xyz, int32_t *perm)
+static sl_status order_by_dissection(const sl_adjacency *graph, const double *xyz, const sl_context *context,
+                                     int32_t *perm)
 {
     int32_t *piece = sl_alloc(graph->n, sizeof *piece);
     sl_status status = piece != NULL ? SL_OK : SL_OUT_OF_MEMORY;
     SL_TRY(status);
     bool complete;
-    SL_TRY(sl_dissect(graph, xyz, piece, perm));
-    SL_TRY(sl_order_leaves(graph, piece, perm, &complete));
+    SL_TRY(sl_dissect(graph, xyz, context, piece, perm));
+    SL_TRY(sl_order_leaves(graph, piece, context, perm, &complete));
     if (!complete) {
         SL_TRY(order_by_camd(graph, piece, perm));
     }
@@ -90,7 +91,8 @@ cleanup:
     return status;
 }
 
-sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int32_t *perm)
+sl_status sl_order_with(const sl_csc *A, sl_ordering ordering, const double *xyz, const sl_context *context,
+                        int32_t *perm)
 {
     sl_adjacency graph = {0};
     sl_status status = SL_OK;
@@ -107,10 +109,15 @@ sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int
     }
     SL_TRY(adjacency_of(A, &graph));
     const bool whole = ordering == SL_ORDER_CAMD || (ordering == SL_ORDER_AUTO && xyz == NULL);
-    SL_TRY(whole ? order_by_camd(&graph, NULL, perm) : order_by_dissection(&graph, xyz, perm));
+    SL_TRY(whole ? order_by_camd(&graph, NULL, perm) : order_by_dissection(&graph, xyz, context, perm));
 cleanup:
     sl_adjacency_clear(&graph);
     return status;
+}
+
+sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int32_t *perm)
+{
+    return sl_order_with(A, ordering, xyz, NULL, perm);
 }
 
 sl_status sl_order_inherit(int32_t parent_n, const int32_t *parent_perm, int32_t count, const int32_t *subset,

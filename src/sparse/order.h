@@ -19,6 +19,10 @@ typedef enum sl_ordering {
  * Miller, Teng, Thurston, Vavasis 1997 for geometric separators. */
 SL_NODISCARD sl_status sl_order(const sl_csc *A, sl_ordering ordering, const double *xyz, int32_t *perm);
 
+/* The same by workers (nullable): the same bytes for any number of them. */
+SL_NODISCARD sl_status sl_order_with(const sl_csc *A, sl_ordering ordering, const double *xyz,
+                                     const sl_context *context, int32_t *perm);
+
 /* The ordering of a part of a larger problem, cut down from the whole's: perm[k] = the part's unknown eliminated k-th.
  * parent_perm: length parent_n; subset[i]: the parent's unknown that the part's unknown i is, each at most once;
  * perm: length count. SL_BAD_INPUT (no permutation, subset out of range or repeated), SL_OUT_OF_MEMORY. O(parent_n). */

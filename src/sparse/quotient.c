@@ -98,7 +98,7 @@ static void place_groups(int32_t n, const double *xyz, const int32_t *group, dou
 }
 
 static sl_status dissect_groups(const sl_adjacency *graph, const double *xyz, const int32_t *group, int32_t groups,
-                                int32_t *piece, int32_t *order)
+                                const sl_context *context, int32_t *piece, int32_t *order)
 {
     sl_adjacency Q = {.n = groups};
     const int64_t n = graph->n;
@@ -119,7 +119,7 @@ static sl_status dissect_groups(const sl_adjacency *graph, const double *xyz, co
     fill_quotient(graph, group, first, member, mark, &Q);
     place_groups(graph->n, xyz, group, points);
     int32_t *group_piece = mark; /* done with as a marker */
-    SL_TRY(sl_dissect_points(&Q, points, group_piece, group_order));
+    SL_TRY(sl_dissect_points(&Q, points, context, group_piece, group_order));
     int32_t placed = 0;
     for (int32_t g = 0; g < groups; g++) {
         for (int32_t k = first[group_order[g]]; k < first[group_order[g] + 1]; k++) {
@@ -137,7 +137,8 @@ cleanup:
     return status;
 }
 
-sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piece, int32_t *order)
+sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, const sl_context *context, int32_t *piece,
+                     int32_t *order)
 {
     if (xyz == NULL) {
         return sl_dissect_graph(graph, piece, order);
@@ -148,9 +149,9 @@ sl_status sl_dissect(const sl_adjacency *graph, const double *xyz, int32_t *piec
     SL_TRY(status);
     SL_TRY(group_by_point(graph->n, xyz, group, &groups));
     if (groups == graph->n) {
-        SL_TRY(sl_dissect_points(graph, xyz, piece, order));
+        SL_TRY(sl_dissect_points(graph, xyz, context, piece, order));
     } else {
-        SL_TRY(dissect_groups(graph, xyz, group, groups, piece, order));
+        SL_TRY(dissect_groups(graph, xyz, group, groups, context, piece, order));
     }
 cleanup:
     sl_free(group);

@@ -81,14 +81,15 @@ static sl_status limit_solver(int64_t limit, int64_t around, int64_t *left)
 }
 
 /* The order of elimination: inherited, or found here so that parts can inherit it. */
-static sl_status find_order(const sl_facet_graph *graph, const sl_csc *A, const int32_t *rank, sl_spectrum *s)
+static sl_status find_order(const sl_facet_graph *graph, const sl_csc *A, const int32_t *rank,
+                            const sl_context *context, sl_spectrum *s)
 {
     s->perm = sl_alloc(s->n, sizeof *s->perm);
     if (s->perm == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     return rank != NULL ? sl_order_by_rank(s->n, rank, s->perm)
-                        : sl_order(A, SL_ORDER_NESTED_DISSECTION, graph->centroid, s->perm);
+                        : sl_order_with(A, SL_ORDER_NESTED_DISSECTION, graph->centroid, context, s->perm);
 }
 
 static sl_status solve_bands(const sl_csc *A, const sl_lanczos_def *solver, const sl_context *context, sl_spectrum *s)
@@ -156,7 +157,7 @@ sl_status sl_spectrum_solve(const sl_facet_graph *graph, const sl_spectrum_def *
         s->info = (sl_lanczos_info){.converged_count = solver.count, .converged = true};
     } else {
         SL_TRY(sl_report_progress(context, "ordering", 0.0));
-        SL_TRY(find_order(graph, A, def->rank, s));
+        SL_TRY(find_order(graph, A, def->rank, context, s));
         solver.null_space = null_space;
         solver.perm = s->perm;
         SL_TRY(solve(A, &solver, def->bands, context, s));

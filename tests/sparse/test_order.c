@@ -115,7 +115,7 @@ static void check_top_separator(const grid *g, const double *xyz, double widest)
     int32_t *piece = sl_alloc(g->n, sizeof *piece), *queue = sl_alloc(g->n, sizeof *queue);
     bool *seen = sl_calloc(g->n, sizeof *seen);
     assert_true(piece && queue && seen);
-    assert_int_equal(sl_dissect(&g->graph, xyz, piece, queue), SL_OK);
+    assert_int_equal(sl_dissect(&g->graph, xyz, NULL, piece, queue), SL_OK);
     assert_permutation(queue, g->n);
     for (int32_t k = 1; k < g->n; k++) {
         assert_in_range(piece[queue[k]] - piece[queue[k - 1]], 0, 1);
@@ -210,10 +210,10 @@ static void ordered_leaves_are_the_same_leaves(void **state)
         int32_t *piece = sl_alloc(g.n, sizeof *piece), *order = sl_alloc(g.n, sizeof *order), *before;
         bool complete = false, moved = false;
         assert_true(piece != NULL && order != NULL);
-        assert_int_equal(sl_dissect(&g.graph, trial % 2 == 0 ? g.xyz : NULL, piece, order), SL_OK);
+        assert_int_equal(sl_dissect(&g.graph, trial % 2 == 0 ? g.xyz : NULL, NULL, piece, order), SL_OK);
         before = sl_copy(order, g.n, sizeof *order);
         assert_non_null(before);
-        assert_int_equal(sl_order_leaves(&g.graph, piece, order, &complete), SL_OK);
+        assert_int_equal(sl_order_leaves(&g.graph, piece, NULL, order, &complete), SL_OK);
         assert_true(complete);
         assert_permutation(order, g.n);
         for (int32_t k = 0; k < g.n; k++) {
@@ -260,7 +260,7 @@ static void leaves_that_are_trees_are_eliminated_from_their_ends(void **state)
             }
             graph.first[v + 1] = filled;
         }
-        assert_int_equal(sl_order_leaves(&graph, piece, order, &complete), SL_OK);
+        assert_int_equal(sl_order_leaves(&graph, piece, NULL, order, &complete), SL_OK);
         assert_true(complete);
         assert_permutation(order, n);
         for (int32_t k = 0; k < n; k++) {
@@ -326,7 +326,7 @@ static void leaves_are_eliminated_by_least_degree_and_twins_at_once(void **state
             }
         }
         const sl_adjacency graph = {n, first, adj};
-        assert_int_equal(sl_order_leaves(&graph, piece, order, &complete), SL_OK);
+        assert_int_equal(sl_order_leaves(&graph, piece, NULL, order, &complete), SL_OK);
         assert_permutation(order, n);
         int32_t pivot_degree = -1; /* of the last that was chosen, less its twins */
         for (int32_t k = 0; k < n; k++) {

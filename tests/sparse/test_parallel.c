@@ -61,6 +61,34 @@ static void run(sl_cholesky *F, const sl_csc *A, double sigma, const sl_context 
     sl_free(work);
 }
 
+static void any_number_of_workers_orders_alike(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x04de);
+    double *xyz;
+    sl_csc *A = grid_with_points(120, &rng, &xyz);
+    const int32_t n = A->ncols;
+    int32_t *alone = sl_alloc(n, sizeof *alone), *shared = sl_alloc(n, sizeof *shared);
+    assert_true(alone != NULL && shared != NULL);
+    for (int points = 0; points < 2; points++) {
+        assert_int_equal(sl_order(A, SL_ORDER_NESTED_DISSECTION, points == 1 ? xyz : NULL, alone), SL_OK);
+        for (size_t k = 0; k < SL_COUNTOF(workers); k++) {
+            sl_thread_pool *pool = NULL;
+            assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
+            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            memset(shared, -1, (size_t)n * sizeof *shared);
+            assert_int_equal(sl_order_with(A, SL_ORDER_NESTED_DISSECTION, points == 1 ? xyz : NULL, &context, shared),
+                             SL_OK);
+            assert_memory_equal(shared, alone, (size_t)n * sizeof *shared);
+            sl_thread_pool_free(pool);
+        }
+    }
+    sl_free(alone);
+    sl_free(shared);
+    sl_free(xyz);
+    sl_csc_free(A);
+}
+
 static void any_number_of_workers_gives_the_same_bytes(void **state)
 {
     (void)state;
@@ -251,6 +279,7 @@ static void tasks_are_whole_subtrees(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_workers_orders_alike),
         cmocka_unit_test(any_number_of_workers_gives_the_same_bytes),
         cmocka_unit_test(solutions_by_tasks_have_small_residuals),
         cmocka_unit_test(the_first_bad_pivot_is_told_whatever_the_workers),
