@@ -132,9 +132,12 @@ static void add_twigs(gen_cage *cage, sl_rng *rng, const branch *bough, const do
     }
     for (int k = 0; k < 2 && !cage->failed; k++) {
         const double sign = k == 0 ? 1.0 : -1.0;
-        branch b = {.length = between(rng, 0.9, 1.6), .radius = between(rng, 0.15, 0.19), .stations = 3 + k};
+        branch b = {.stations = 3 + k};
         double end[3];
-        aim(turn + sign * between(rng, 0.30, 0.52), rise + between(rng, -0.15, 0.20), b.direction);
+        b.length = between(rng, 0.9, 1.6); /* one draw a statement: their order must not be the compiler's choice */
+        b.radius = between(rng, 0.15, 0.19);
+        const double apart = between(rng, 0.30, 0.52), up = between(rng, -0.15, 0.20);
+        aim(turn + sign * apart, rise + up, b.direction);
         for (int i = 0; i < 3; i++) {
             b.base[i] = tip[i] + 0.08 * bough->direction[i] + 0.12 * sign * aside[i];
         }
