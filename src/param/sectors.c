@@ -26,7 +26,10 @@ sl_status sl_sectors_interior(const sl_patch *patch, sl_sector_table *out)
     table.first = sl_alloc((int64_t)count + 1, sizeof *table.first);
     table.corner = sl_alloc(corners, sizeof *table.corner);
     table.theta = sl_alloc(count, sizeof *table.theta);
-    if (table.first == NULL || table.corner == NULL || table.theta == NULL) {
+    table.vertex = sl_alloc(count, sizeof *table.vertex);
+    table.origin = sl_alloc(count, sizeof *table.origin);
+    if (table.first == NULL || table.corner == NULL || table.theta == NULL || table.vertex == NULL ||
+        table.origin == NULL) {
         sl_sectors_clear(&table);
         return SL_OUT_OF_MEMORY;
     }
@@ -36,6 +39,8 @@ sl_status sl_sectors_interior(const sl_patch *patch, sl_sector_table *out)
             continue;
         }
         table.first[s] = p;
+        table.vertex[s] = v;
+        table.origin[s] = -1;
         table.theta[s++] = full_turn;
         const int32_t start = patch->outgoing[v];
         int32_t c = start;
@@ -55,6 +60,8 @@ void sl_sectors_clear(sl_sector_table *table)
     sl_free(table->first);
     sl_free(table->corner);
     sl_free(table->theta);
+    sl_free(table->vertex);
+    sl_free(table->origin);
     *table = (sl_sector_table){0};
 }
 

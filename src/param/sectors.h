@@ -1,4 +1,4 @@
-/* Tables of vertex sectors: runs of corners whose planar angles add up to a prescribed sum.
+/* Tables of vertex sectors: sets of corners whose planar angles add up to a prescribed sum.
  * Layer: param. */
 #ifndef SL_PARAM_SECTORS_H
 #define SL_PARAM_SECTORS_H
@@ -11,6 +11,8 @@ typedef struct sl_sector_table {
     int32_t *first;
     int32_t *corner;
     double *theta;
+    int32_t *vertex; /* count: the vertex of a sector */
+    int32_t *origin; /* count: the constraint that made a sector, -1 = the plain turn of an interior vertex */
 } sl_sector_table;
 
 /* One sector of 2 pi per interior vertex, in vertex order, each with its corners counter-clockwise from the patch's
@@ -22,6 +24,22 @@ void sl_sectors_clear(sl_sector_table *table);
 /* Is a table usable on a patch? SL_INFEASIBLE: a sector without corners, *bad_sector (nullable) tells which;
  * SL_BAD_INPUT: first not ascending, a corner out of range, theta not finite. */
 SL_NODISCARD sl_status sl_sectors_check(const sl_patch *patch, const sl_sectors *sectors, int32_t *bad_sector);
+
+/**
+ * Can any angles satisfy the linear constraints g1 = 0 and g2 = 0, every one of them positive?
+ *
+ * Triangles and sectors that share corners form regions: those that lines and prescribed borders close off. In a region
+ * where every corner is in a sector the angles of n triangles are prescribed altogether, and by Gauss-Bonnet
+ *
+ *     sum of theta = n pi
+ *
+ * or nothing can satisfy them; where some corners are free, these must hold what is left, each in (0, pi). A sector of
+ * k triangles holds less than k pi. For tables where no corner is in two sectors.
+ *
+ * @param[out] diag the region's or sector's vertices, the sums, the constraints; element = a patch vertex; nullable
+ *
+ * SL_INFEASIBLE, SL_OUT_OF_MEMORY. O(corners). */
+SL_NODISCARD sl_status sl_sectors_feasible(const sl_patch *patch, const sl_sector_table *table, sl_diag *diag);
 
 /* The next corner counter-clockwise around c's vertex, -1 where the border ends the fan. */
 static inline int32_t sl_corner_rotate(const sl_patch *patch, int32_t c)
