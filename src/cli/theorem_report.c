@@ -123,7 +123,8 @@ static void print_tap_row(const theorem_row *row, int32_t *number)
         }
         printf("%s %d - ", t->violated > 0 ? "not ok" : "ok", ++*number);
         print_name(row->name);
-        printf(": %d %s: %" PRId64 " graphs", s, sl_theorem_statement_name((sl_theorem_statement)s), asked(t));
+        printf(": %d %s: %" PRId64 " of %" PRId64 " hold", s, sl_theorem_statement_name((sl_theorem_statement)s),
+               t->holds, asked(t));
         if (t->undecided > 0) {
             printf(", %" PRId64 " undecided", t->undecided);
         }

@@ -13,6 +13,7 @@ typedef struct orbits {
     int32_t k, nodes;
     int32_t *rotated;   /* r x */
     int32_t *reflected; /* s x */
+    int32_t *first;     /* of the orbit of x */
 } orbits;
 
 static int32_t orbit_size(orbit_kind kind, int32_t k)
@@ -26,6 +27,7 @@ static void add_orbit(orbits *o, orbit_kind kind)
     for (int32_t i = 0; i < orbit_size(kind, k); i++) {
         const int32_t a = kind == GROUP ? i / 2 : i, b = kind == GROUP ? i % 2 : 0;
         const int32_t offset = kind == SIDES ? 1 : 0;
+        o->first[first + i] = first;
         if (kind == GROUP) { /* r r^a s^b; s r^a s^b = r^-a s^(1 + b) */
             o->rotated[first + i] = first + 2 * ((a + 1) % k) + b;
             o->reflected[first + i] = first + 2 * ((k - a) % k) + 1 - b;
@@ -66,7 +68,8 @@ static sl_status make_orbits(sl_rng *rng, int32_t nodes, int32_t k, orbits *o)
     *o = (orbits){.k = k};
     o->rotated = sl_alloc((int64_t)nodes + 2 * k, sizeof *o->rotated);
     o->reflected = sl_alloc((int64_t)nodes + 2 * k, sizeof *o->reflected);
-    if (o->rotated == NULL || o->reflected == NULL) {
+    o->first = sl_alloc((int64_t)nodes + 2 * k, sizeof *o->first);
+    if (o->rotated == NULL || o->reflected == NULL || o->first == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     add_orbit(o, k <= nodes / 2 ? GROUP : CORNERS);
@@ -88,9 +91,15 @@ static sl_status make_group(sl_rng *rng, int32_t nodes, int32_t k, sl_theorem_gr
     *out = NULL;
     SL_TRY(make_orbits(rng, nodes, k, &o));
     edges.fixed = o.nodes;
-    const double more = o.nodes < dense_nodes ? 0.8 : 0.1; /* large ones sparser: they fill up when factored */
-    const int32_t wanted = 1 + (int32_t)((1.0 + more * sl_rng_uniform(rng)) * o.nodes);
-    for (int32_t tries = 0; edges.count < wanted && tries < 4 * wanted; tries++) {
+    for (int32_t x = 1; x < o.nodes; x++) { /* every orbit is joined to an earlier one */
+        if (o.first[x] == x) {
+            add_edge_orbit(&o, &edges, x, sl_rng_index(rng, x));
+        }
+    }
+    /* and some at random, fewer where the graph is large: those fill up when factored */
+    const double more = o.nodes < dense_nodes ? 0.8 * sl_rng_uniform(rng) : 0.1;
+    const int64_t wanted = edges.count + 1 + (int64_t)(more * o.nodes);
+    for (int64_t tries = 0; edges.count < wanted && tries < 4 * wanted; tries++) {
         const int32_t x = sl_rng_index(rng, o.nodes), y = sl_rng_index(rng, o.nodes);
         add_edge_orbit(&o, &edges, x, y);
     }
@@ -106,6 +115,7 @@ cleanup:
     sl_free(second);
     sl_free(o.rotated);
     sl_free(o.reflected);
+    sl_free(o.first);
     sl_theorem_graph_free(plain);
     return status;
 }

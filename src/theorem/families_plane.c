@@ -130,7 +130,7 @@ sl_status sl_make_planar(sl_rng *rng, int32_t nodes, sl_theorem_graph **out)
  * values like 1e-20 cannot be read from doubles. */
 sl_status sl_make_strip(sl_rng *rng, int32_t nodes, sl_theorem_graph **out)
 {
-    const int32_t long_strip = 48;
+    const int32_t long_strip = 20;
     const int32_t thin = 1 + sl_rng_index(rng, 4);
     const int32_t length = nodes / 2 / (thin + 1) > 2 ? nodes / 2 / (thin + 1) : 2;
     const bool along = sl_rng_uniform(rng) < 0.5;

@@ -8,7 +8,7 @@
 static void add_tree(sl_rng *rng, sl_edges *edges, int32_t first, int32_t count, bool thin)
 {
     for (int32_t i = 1; i < count; i++) {
-        const int32_t near = 6 + count / 64, reach = thin && i > near ? near : i;
+        const int32_t near = 8 + count / 32, reach = thin && i > near ? near : i;
         sl_edges_within(edges, first + i, first + i - 1 - sl_rng_index(rng, reach));
     }
 }

@@ -51,7 +51,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure segment spectrum demo; do
+for verb in unwrap check measure segment spectrum theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -224,6 +224,44 @@ expect 2 "$seamlab" spectrum $mesh --signs --bands
 for option in '--tolerance 1e-15' '--tolerance 1' '--memory-limit 2X' '--memory-limit G' '--memory-limit -1G' '--memory-limit nan' '--bands=on'; do
     expect 2 "$seamlab" spectrum $mesh $option
 done
+
+# --- theorem: holds, is seen to fail, replays, refuses
+expect 0 "$seamlab" theorem --graphs 240
+contains out.txt 'every statement holds'
+expect 0 "$seamlab" theorem --graphs 240 --threads 1 --tap
+contains out.txt '^TAP version 13$'
+contains out.txt '^ok .*figure-17'
+[ "$(grep -c '^ok ' out.txt)" = "$(sed -n 's/^1\.\.//p' out.txt)" ] || complain "the TAP plan is not what was printed"
+mv out.txt one.txt
+expect 0 "$seamlab" theorem --graphs 240 --threads 3 --tap
+cmp -s one.txt out.txt || complain "theorem: other bytes with 3 threads"
+expect 0 "$seamlab" theorem --graphs 240 --json
+json out.txt
+contains out.txt '"schema":1'
+contains out.txt '"violated":false'
+for what in graph vector sign; do
+    rm -f theorem-7-0.graph
+    expect 5 "$seamlab" theorem --graphs 24 --seed 7 --break $what --tap
+    contains out.txt '^not ok '
+    [ -s theorem-7-0.graph ] || complain "no replay file after --break $what"
+    [ $what = graph ] && cp theorem-7-0.graph broken.graph
+done
+expect 5 "$seamlab" theorem --graph broken.graph
+contains out.txt VIOLATED
+expect 0 "$seamlab" theorem --graph theorem-7-0.graph
+sed 's/^edges .*/edges 9999/' broken.graph >short.graph
+expect 3 "$seamlab" theorem --graph short.graph
+contains err.txt 'short.graph:[0-9]'
+expect 3 "$seamlab" theorem --graph no-such.graph
+expect 3 "$seamlab" theorem --mesh no-such.obj
+expect 2 "$seamlab" theorem --mesh
+expect 2 "$seamlab" theorem --tap --json
+expect 0 "$seamlab" theorem --mesh ball/sphere.obj ring/torus.obj --json
+json out.txt
+contains out.txt '"name":"basis","verdict":"holds"'
+printf 'v 0 0 0\nv 2 0 0\nv 0 1 0\nv 3 3 1\nv 5 1 0\nv 6 4 1\nf 1 2 3\nf 2 4 3\nf 2 5 6 4\n' >odd.obj
+expect 0 "$seamlab" theorem --mesh odd.obj --tap
+contains out.txt '# SKIP no mirror'
 
 # --- check
 expect 0 "$seamlab" check $mesh --strict
