@@ -40,6 +40,8 @@ static sl_status count_below(sl_lanczos *s, double sigma, double below, int32_t 
     sl_inertia_info info = {0};
     sl_status status = SL_OK;
     SL_TRY(sl_report_progress(s->context, "certificate", 0.0));
+    sl_cholesky_release(s->factor); /* counts need the analysis alone */
+    s->released = true;
     SL_TRY(sl_inertia(s->factor, s->A, sigma, s->context, &info));
     s->info.counts++;
     *count = info.negative;

@@ -9,8 +9,8 @@
 static const double kept_share = 1e-2;
 
 /* The basis is looked at again once so much of the way that is left, by the pace so far, lies behind. The pace, the
- * logarithm's fall a column, picks up after a slow start: measured, it is this at least later on. */
-static const double look_share = 0.8, least_pace = 0.12;
+ * logarithm's fall a block, picks up after a slow start: measured, it is this at least later on. */
+static const double look_share = 0.8, least_pace = 0.9;
 
 /* Every second block is looked back at: the three-term recurrence hands what is left in the others on undiminished, but
  * hardly magnified. */
@@ -76,8 +76,9 @@ void sl_krylov_seen(const sl_krylov *k, sl_krylov_watch *watch, double worst)
 {
     watch->look = k->applied;
     if (watch->before > 0 && isfinite(watch->worst) && worst < watch->worst) {
-        const double pace = fmax(least_pace, log(watch->worst / worst) / (k->applied - watch->before));
-        const double left = look_share * log(worst) / pace;
+        const double blocks = (double)(k->applied - watch->before) / k->w;
+        const double pace = fmax(least_pace, log(watch->worst / worst) / blocks);
+        const double left = look_share * k->w * log(worst) / pace;
         watch->look += left < 1e6 ? (int32_t)left : 0;
     }
     watch->before = k->applied;

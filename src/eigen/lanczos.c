@@ -220,6 +220,13 @@ static sl_status skeleton_step(sl_lanczos *s)
 static sl_status take_step(sl_lanczos *s)
 {
     sl_status status = SL_OK;
+    if (s->released && (s->stage == SL_STAGE_KRYLOV || s->stage == SL_STAGE_ITERATE)) {
+        status = sl_cholesky_factor_shifted(s->factor, s->A, s->sigma, s->context, NULL);
+        s->released = status != SL_OK;
+        if (status != SL_OK) {
+            return status;
+        }
+    }
     switch (s->stage) {
     case SL_STAGE_SKELETON:
         return skeleton_step(s);

@@ -30,6 +30,7 @@ struct sl_lanczos {
     const sl_csc *A;           /* borrowed */
     const sl_context *context; /* borrowed */
     sl_cholesky *factor;
+    bool released; /* L has made room for a count; it is computed again when more pairs are needed */
     int32_t *perm; /* its permutation */
     sl_rows rows;  /* A in the factor's order; made when first needed */
     double *solve_work;

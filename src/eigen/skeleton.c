@@ -16,8 +16,7 @@ static const double least_tolerance = 5e-5, most_tolerance = 2e-3, tolerance_sha
 /* A null vector that has less than this length on the separators is left out: a component inside one patch. */
 static const double least_null_length = 1e-8;
 
-/* Pairs beyond those of X that corrections know of; measured: 24 do half as well, 96 no better. */
-enum { MODES_BEYOND = 48, MAX_FILLINGS = 5 };
+enum { MAX_FILLINGS = 5 };
 
 /* W := D^(1/2) W */
 static void scale_rows(const sl_skeleton *k, double *W, int32_t w)
@@ -187,7 +186,7 @@ static void clear(sl_skeleton *k)
 sl_status sl_lanczos_skeleton(sl_lanczos *s, bool *usable)
 {
     const int32_t panels = sl_panel_count(s->columns);
-    sl_skeleton k = {.s = s, .first = sl_cholesky_top_first(s->factor), .modes = s->columns + MODES_BEYOND};
+    sl_skeleton k = {.s = s, .first = sl_cholesky_top_first(s->factor), .modes = s->columns + SL_MODES_BEYOND};
     sl_status status = SL_OK;
     k.rows = s->n - k.first;
     *usable = k.first > 0 && (int64_t)k.rows > (int64_t)s->max_basis + 2 * SL_PANEL + s->null_count;

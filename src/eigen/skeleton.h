@@ -24,6 +24,9 @@ typedef struct sl_skeleton {
     double *partial, *H; /* of projections on the pairs beyond those of X */
 } sl_skeleton;
 
+/* Pairs beyond those of X that corrections know of; measured: 24 do half as well, 96 no better. */
+enum { SL_MODES_BEYOND = 48 };
+
 /* recover.c: takes the Ritz pairs over from the Krylov space, which is spent. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_skeleton_take_modes(sl_skeleton *k);
 
