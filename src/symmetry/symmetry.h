@@ -80,8 +80,10 @@ sl_symmetry_def sl_symmetry_default(void);
  * Facets are coloured by refinement first; from a halfedge of the rarest colour all of that colour are tried in both
  * orientations, the ones whose geometry fits on the first facets before the others, and every walk ends at the first
  * mismatch. Near linear: where regularity would cost more than a fixed multiple of the corners, the search stops:
- * truncated. Of a component of more maps than may be listed, mirrors come first, and of these ones that stand at large
- * angles to one another; exact maps before others. SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic.
+ * truncated. Of a component of more exact maps than may be listed, three mirrors are taken first, at angles
+ * as large as can be, the rotation of the smallest angle, which together generate the rest in a solid of revolution,
+ * then the other mirrors; what is not listed is found by sl_symmetry_traverse. Exact maps stand before others, mirrors
+ * before rotations. SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic.
  * Source: paper, Sec. 4.3 (the walk); Weisfeiler & Leman 1968 (refinement). */
 SL_NODISCARD sl_status sl_symmetry_find(const sl_mesh *mesh, const int32_t *partner, const sl_symmetry_def *def,
                                         const sl_context *context, sl_symmetry **out);

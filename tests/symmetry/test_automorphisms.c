@@ -139,7 +139,12 @@ static void exact_maps_of_a_torus_come_before_the_others(void **state)
         s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
         assert_true(s->truncated);
         assert_int_equal(s->nmap, SL_SYMMETRY_MOST);
-        /* the first three stand at right angles to one another where the torus has such */
+        /* three mirrors at right angles (where there are such) and the smallest turn generate them all */
+        bool turn = false;
+        for (int32_t j = 0; j < s->nmap; j++) {
+            turn = turn || (!s->map[j].reverses && s->map[j].kind == SL_SYMMETRY_EXACT && s->map[j].order == n);
+        }
+        assert_true(turn);
         double most = -HUGE_VAL;
         for (int32_t a = 0; a < 2; a++) {
             const double *T = s->map[a].isometry, *U = s->map[a + 1].isometry;
@@ -156,6 +161,40 @@ static void exact_maps_of_a_torus_come_before_the_others(void **state)
         sl_mesh_free(mesh);
         model_free(&m);
     }
+}
+
+/* A disc of 120 sectors whose rim alone is six-fold: around the middle every turn looks exact. */
+static void a_round_middle_does_not_hide_a_six_fold_rim(void **state)
+{
+    (void)state;
+    enum { SECTORS = 120, RINGS = 40 };
+    model m = model_new();
+    model_vertex(&m, 0, 0, 0.5);
+    for (int ring = 1; ring <= RINGS; ring++) {
+        for (int i = 0; i < SECTORS; i++) {
+            const double a = 2 * TEST_PI * i / SECTORS;
+            const double r = ring * (1.0 + (ring > RINGS - 3 ? 0.05 * cos(6 * a) : 0.0));
+            model_vertex(&m, r * cos(a), r * sin(a), 0.5 - 0.001 * ring * ring);
+        }
+    }
+    for (int i = 0; i < SECTORS; i++) {
+        const int j = (i + 1) % SECTORS;
+        model_triangle(&m, 0, 1 + i, 1 + j);
+        for (int ring = 0; ring < RINGS - 1; ring++) {
+            const int a = 1 + ring * SECTORS;
+            model_quad(&m, a + i, a + SECTORS + i, a + SECTORS + j, a + j);
+        }
+    }
+    sl_mesh *mesh = model_build(&m);
+    sl_symmetry *s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
+    assert_true(s->truncated);
+    for (int32_t i = 0; i < s->nmap; i++) {
+        assert_int_equal(s->map[i].kind == SL_SYMMETRY_EXACT, i < 11);
+        assert_int_equal(s->map[i].reverses && s->map[i].separates, i < 6 || s->map[i].reverses);
+    }
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+    model_free(&m);
 }
 
 static int32_t planted_axis(const model *m, const int32_t *vertex, const int32_t *mirror, int32_t nv)
@@ -346,6 +385,7 @@ int main(void)
         cmocka_unit_test(random_meshes_have_as_many_automorphisms_as_brute_force_finds),
         cmocka_unit_test(groups_of_solids_have_their_orders_and_mirrors),
         cmocka_unit_test(exact_maps_of_a_torus_come_before_the_others),
+        cmocka_unit_test(a_round_middle_does_not_hide_a_six_fold_rim),
         cmocka_unit_test(planted_mirrors_are_found_and_nothing_else),
         cmocka_unit_test(sheets_without_symmetry_have_none),
         cmocka_unit_test(one_edge_more_ends_a_symmetry),
