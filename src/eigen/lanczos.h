@@ -31,7 +31,8 @@ typedef struct sl_lanczos_def {
     int32_t max_basis;        /* columns before a restart; 0 = chosen from count and block; default 0 */
     int32_t max_restarts;     /* steps of sl_lanczos_solve beyond the first; default 50 */
     uint64_t seed;            /* start block; default 1 */
-    const double *null_space; /* n x null_count, orthonormal columns, A null_space = 0; borrowed; default NULL */
+    const double *null_space; /* n x null_count, orthonormal columns, A null_space = 0; borrowed as long as the solver
+                                 lives; default NULL */
     int32_t null_count;       /* default 0 */
     const double *xyz;        /* n x 3 for the ordering; borrowed; default NULL */
     const int32_t *perm;      /* ordering to inherit, length n; borrowed; default NULL */
@@ -55,7 +56,7 @@ typedef struct sl_lanczos_info {
     int32_t count_below;
     int32_t counts;          /* inertia counts made */
     int32_t restarts;        /* thick restarts, and restarts with a larger block after a count disagreed */
-    int32_t iterations;      /* block inverse iterations */
+    int32_t iterations;      /* block inverse iterations, the one after a basis of single precision included */
     int32_t solves;          /* right-hand sides solved for with the whole factor */
     int32_t skeleton_solves; /* with its top part alone */
     int32_t block;           /* block width used */
