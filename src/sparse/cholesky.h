@@ -40,7 +40,7 @@ SL_NODISCARD sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_de
 SL_NODISCARD sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column);
 
 /* The same of A - sigma I, which is not formed. context: workers for the elimination tree, nullable; the bytes of L do
- * not depend on how many. */
+ * not depend on how many. SL_CANCELLED: its progress function said so; F may be refactored or freed. */
 SL_NODISCARD sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma,
                                                   const sl_context *context, int32_t *bad_column);
 
@@ -102,7 +102,8 @@ typedef struct sl_inertia_info {
 } sl_inertia_info;
 
 /* Counts the eigenvalues of A below sigma by Sylvester's law of inertia. F: an analysis of A's pattern, of either kind;
- * it is only read, no L is stored: memory for the stack of fronts alone. SL_BAD_INPUT, SL_OUT_OF_MEMORY. Backward
+ * it is only read, no L is stored: memory for the stack of fronts alone. SL_BAD_INPUT, SL_OUT_OF_MEMORY, SL_CANCELLED.
+ * Backward
  * error: Higham 2002, Theorem 10.3 for |L| |D| |L'|, with the length of each row of L for n. */
 SL_NODISCARD sl_status sl_inertia(const sl_cholesky *F, const sl_csc *A, double sigma, const sl_context *context,
                                   sl_inertia_info *info);

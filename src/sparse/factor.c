@@ -48,6 +48,7 @@ sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sig
     sl_front_job job = {.F = F,
                         .A = A,
                         .sigma = sigma,
+                        .stage = "factor",
                         .pivoting = {F->pivot_rtol * diagonal, 0.0},
                         .L = F->L,
                         .sign = F->sign,

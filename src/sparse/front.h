@@ -14,6 +14,7 @@ typedef struct sl_front_job {
     const sl_csc *A;
     double sigma;
     sl_pivoting pivoting;
+    const char *stage;       /* for progress */
     double *L;               /* where panels stay, NULL = they are thrown away */
     int8_t *sign;            /* n, NULL = LL' */
     sl_panel_fn *panel_done; /* nullable */
@@ -21,7 +22,7 @@ typedef struct sl_front_job {
     int32_t bad; /* result: column of P A P' whose pivot stopped the walk, or -1 */
 } sl_front_job;
 
-/* SL_OK also when a pivot stopped it; SL_OUT_OF_MEMORY. */
+/* SL_OK also when a pivot stopped it; SL_OUT_OF_MEMORY, SL_CANCELLED. */
 SL_NODISCARD sl_status sl_factor_fronts(sl_front_job *job, const sl_context *context);
 
 /* max|a_ij| and max|a_ii| of A - sigma I; SL_BAD_INPUT when a value is not finite or A has another pattern than F. */

@@ -8,6 +8,9 @@
 /* Fronts with this many multiplications and more are shared among workers. */
 static const double shared_work = 4e6;
 
+/* Progress is reported whenever so many multiplications are done: tens of milliseconds. */
+static const double report_work = 5e8;
+
 /* One walk's own memory. Update matrices live on two stacks that grow from the ends of one array: those of supernodes
  * at even depth from the left, at odd depth from the right, so that a parent's is not made where its children's lie. */
 typedef struct walker {
@@ -265,6 +268,34 @@ static int32_t factor_supernode(walker *w, int32_t s)
     return -1;
 }
 
+static double work_of(const sl_cholesky *F, int32_t s)
+{
+    const double width = sl_supernode_width(F, s), height = width + sl_supernode_below(F, s);
+    return width * height * height;
+}
+
+/* The supernodes of `walk`, or those of the crown alone, whose tasks are done. */
+static sl_status walk_tree(walker *w, sl_front_job *job, const sl_context *context, const int32_t *task_bad)
+{
+    const sl_cholesky *F = job->F;
+    double reported = 0.0, done = 0.0, all = 1.0;
+    sl_status status = SL_OK;
+    for (int32_t s = 0; s < F->supernodes; s++) {
+        all += work_of(F, s);
+    }
+    for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
+        const int32_t s = F->walk[k], t = F->task[s];
+        job->bad = task_bad == NULL || t == -1 ? factor_supernode(w, s) : task_bad[t];
+        done += work_of(F, s);
+        if (done - reported >= report_work) {
+            reported = done;
+            SL_TRY(sl_report_progress(context, job->stage, done / all));
+        }
+    }
+cleanup:
+    return status;
+}
+
 /* Tasks by workers. */
 typedef struct task_job {
     const sl_front_job *job;
@@ -326,10 +357,7 @@ static sl_status factor_in_parallel(walker *w, sl_front_job *job, const sl_conte
     }
     w->kept = tasks.kept;
     w->context = context;
-    for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
-        const int32_t s = F->walk[k], t = F->task[s];
-        job->bad = t == -1 ? factor_supernode(w, s) : tasks.bad[t];
-    }
+    SL_TRY(walk_tree(w, job, context, tasks.bad));
 cleanup:
     for (int32_t t = 0; t < count && tasks.kept != NULL; t++) {
         sl_free(tasks.kept[t]);
@@ -351,9 +379,7 @@ sl_status sl_factor_fronts(sl_front_job *job, const sl_context *context)
     if (parallel && F->task_count > 0) {
         SL_TRY(factor_in_parallel(&w, job, context));
     } else {
-        for (int32_t k = 0; k < F->supernodes && job->bad == -1; k++) {
-            job->bad = factor_supernode(&w, F->walk[k]);
-        }
+        SL_TRY(walk_tree(&w, job, context, NULL));
     }
 cleanup:
     walker_clear(&w);

@@ -173,8 +173,14 @@ sl_status sl_inertia(const sl_cholesky *F, const sl_csc *A, double sigma, const 
     SL_TRY(gathering_init(&g, F));
     const double least = fmax(tiny_pivot * found.max_a, DBL_MIN);
     g.replaced = 1.0 / sqrt(least);
-    sl_front_job job = {
-        .F = F, .A = A, .sigma = sigma, .pivoting = {least, least}, .sign = sign, .panel_done = add_panel, .user = &g};
+    sl_front_job job = {.F = F,
+                        .A = A,
+                        .sigma = sigma,
+                        .stage = "inertia",
+                        .pivoting = {least, least},
+                        .sign = sign,
+                        .panel_done = add_panel,
+                        .user = &g};
     SL_TRY(sl_factor_fronts(&job, context));
     merge_harvests(&g, &found);
     found.backward_error = error_bound(&g, &found);

@@ -161,6 +161,41 @@ static void solutions_by_tasks_have_small_residuals(void **state)
     sl_csc_free(A);
 }
 
+typedef struct patience {
+    int32_t left, asked;
+} patience;
+
+static bool wait_a_while(void *user, const char *stage, double fraction)
+{
+    patience *p = user;
+    assert_true(stage[0] != '\0' && fraction >= 0.0 && fraction <= 1.0);
+    p->asked++;
+    return p->left-- > 0;
+}
+
+/* A dense front of 1,200 columns, which asks once at its end, under a tree; cancelled there, then let through. */
+static void a_cancelled_factorisation_may_be_repeated(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xcace1);
+    sl_csc *A = random_spd(MATRIX_DENSE, 1200, 0.3, &rng);
+    sl_cholesky *F = NULL;
+    sl_inertia_info info;
+    assert_int_equal(sl_cholesky_analyze(A, NULL, &F), SL_OK);
+    for (int32_t left = 0; left < 2; left++) {
+        patience p = {left, 0};
+        const sl_context context = {NULL, wait_a_while, &p};
+        const sl_status want = left == 0 ? SL_CANCELLED : SL_OK;
+        assert_int_equal(sl_cholesky_factor_shifted(F, A, 0.0, &context, NULL), want);
+        assert_int_equal(p.asked, 1);
+        p = (patience){left, 0};
+        assert_int_equal(sl_inertia(F, A, 0.0, &context, &info), want);
+    }
+    assert_int_equal(info.negative, 0);
+    sl_cholesky_free(F);
+    sl_csc_free(A);
+}
+
 static void the_first_bad_pivot_is_told_whatever_the_workers(void **state)
 {
     (void)state;
@@ -282,6 +317,7 @@ int main(void)
         cmocka_unit_test(any_number_of_workers_orders_alike),
         cmocka_unit_test(any_number_of_workers_gives_the_same_bytes),
         cmocka_unit_test(solutions_by_tasks_have_small_residuals),
+        cmocka_unit_test(a_cancelled_factorisation_may_be_repeated),
         cmocka_unit_test(the_first_bad_pivot_is_told_whatever_the_workers),
         cmocka_unit_test(error_bounds_are_those_of_the_stored_factor),
         cmocka_unit_test(tasks_are_whole_subtrees),
