@@ -32,7 +32,7 @@ do for [row = 1:2] {
             set ytics nomirror out ('0.7' log(0.7)/log(2), '0.8' log(0.8)/log(2), '0.9' log(0.9)/log(2), '1' 0, \
                 '1.1' log(1.1)/log(2), '1.2' log(1.2)/log(2), '1.3' log(1.3)/log(2), '1.5' log(1.5)/log(2))
         } else {
-            set ytics nomirror out ('1/16' -4, '1/8' -3, '1/4' -2, '1/2' -1, '1' 0, '2' 1, '4' 2, \
+            set ytics nomirror out ('1/64' -6, '1/32' -5, '1/16' -4, '1/8' -3, '1/4' -2, '1/2' -1, '1' 0, '2' 1, '4' 2, \
                 '8' 3, '16' 4, '32' 5, '64' 6, '128' 7)
         }
         set arrow 1 from 0.4,0 to 3.6,0 nohead lw 1.4 lc rgb '#1a7f4b' back

@@ -114,6 +114,12 @@ static void show_pictures(exp_page *page, const model *models, int32_t count)
 
 static void show_plots(exp_page *page)
 {
+    exp_page_html(
+        page, "<p>The hand bears the caption out. In general spectral cuts need fewer charts than PCA and VSA by error "
+              "and shorter seams than all three; but as printed they do not turn less: on round shapes (sphere, "
+              "torus, cube) &ldquo;the longest seam that passes&rdquo; is a zigzag of a high vector. PCA goes wrong on "
+              "what it has cut itself: the shortest axis of a thin shell runs across it, and the plane slices "
+              "ripples. Smoothing, joining and sewing level most of it.</p>\n");
     exp_page_html(page, "<div class=\"plot\">\n");
     exp_page_figure(page, "", "ratios.svg", "every model's numbers over those of spectral cuts",
                     "Each dot is a model: its number over that of the spectral cuts. Above the line the spectral cuts "
