@@ -14,6 +14,7 @@ enum {
 };
 
 static const double ROUNDING = 4e-7; /* of distances kept as floats, over the diagonal */
+static const double TINY = 1e-12;    /* of a sum */
 
 typedef struct part {
     int32_t component, cells, corners;
@@ -45,14 +46,16 @@ static int compare_number(const void *a, const void *b)
     return p->component < q->component ? -1 : 1;
 }
 
-static bool same_length(const sl_symmetry_def *def, const part *a, const part *b)
+/* Of exact copies every edge agrees within twice the deviation. */
+static bool same_length(const sl_symmetry_search *search, const part *a, const part *b)
 {
-    return fabs(a->edges - b->edges) <= 2.0 * def->exact * fmax(a->edges, b->edges);
+    const double size = search->cells->size[a->component];
+    return fabs(a->edges - b->edges) <= 2.0 * search->def->exact * size * a->corners + TINY * a->edges;
 }
 
-static bool alike(const sl_symmetry_def *def, const part *a, const part *b)
+static bool alike(const sl_symmetry_search *search, const part *a, const part *b)
 {
-    return a->cells == b->cells && a->corners == b->corners && a->color == b->color && same_length(def, a, b);
+    return a->cells == b->cells && a->corners == b->corners && a->color == b->color && same_length(search, a, b);
 }
 
 /* Tries to send `from` to `to`, kept orientations first. */
@@ -90,7 +93,7 @@ static sl_status match_run(sl_symmetry_search *search, part *run, int32_t count)
         int32_t compared = 0;
         SL_TRY(sl_report_progress(search->context, "copies", 0.2));
         for (int32_t k = 0; k < originals && !found && compared < ORIGINALS; k++) {
-            if (same_length(search->def, &run[k], &run[i])) {
+            if (same_length(search, &run[k], &run[i])) {
                 compared++;
                 SL_TRY(match(search, run[k].component, run[i].component, &found));
                 if (found) {
@@ -119,7 +122,7 @@ sl_status sl_symmetry_copies(sl_symmetry_search *search)
     }
     qsort(parts, (size_t)c->components, sizeof *parts, compare_length);
     for (int32_t begin = 0, end; begin < c->components; begin = end) {
-        for (end = begin + 1; end < c->components && alike(search->def, &parts[end - 1], &parts[end]);) {
+        for (end = begin + 1; end < c->components && alike(search, &parts[end - 1], &parts[end]);) {
             end++;
         }
         if (end - begin > 1) {

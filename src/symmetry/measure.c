@@ -6,7 +6,7 @@
 
 enum { SAMPLE = 4096 }; /* corners of the first fit, which is the last where it is exact */
 
-static const double BOUND_ENOUGH = 1e-3; /* a misfit bounded by this share of def.exact is not measured */
+static const double BOUND_ENOUGH = 1e-6; /* a misfit bounded by this share of def.lengths is not measured */
 static const double SHORTEST = 1e-6;     /* edges below this share of the diagonal count as that long */
 
 static void fit(const sl_cells *cells, int32_t from, int32_t to, int32_t corners, int32_t stride, bool reverses,
@@ -109,12 +109,12 @@ void sl_symmetry_measure(const sl_cells *cells, const sl_symmetry_def *def, cons
     }
     const double shortest = fmax(SHORTEST * unit, fmin(cells->shortest[map->from], cells->shortest[map->to]));
     map->misfit = 2.0 * map->deviation * unit / shortest;
-    if (map->misfit > BOUND_ENOUGH * def->exact) {
+    if (map->misfit > BOUND_ENOUGH * def->lengths) {
         const double ratio = largest_ratio(cells, map->from, image, SHORTEST * unit);
         map->misfit = ratio < 1.0 ? ratio / (1.0 + sqrt(1.0 - ratio)) : 1.0; /* 1 - sqrt(1 - ratio) */
     }
-    map->kind = map->deviation <= def->exact && map->misfit <= def->exact ? SL_SYMMETRY_EXACT
-                : map->deviation <= def->near                             ? SL_SYMMETRY_NEAR
-                                                                          : SL_SYMMETRY_TOPOLOGICAL;
+    map->kind = map->deviation <= def->exact && map->misfit <= def->lengths ? SL_SYMMETRY_EXACT
+                : map->deviation <= def->near                               ? SL_SYMMETRY_NEAR
+                                                                            : SL_SYMMETRY_TOPOLOGICAL;
     map->order = map->from == map->to ? find_order(cells, map->from, image, map->reverses) : 0;
 }

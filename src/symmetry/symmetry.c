@@ -4,7 +4,8 @@
 
 sl_symmetry_def sl_symmetry_default(void)
 {
-    return (sl_symmetry_def){.exact = 1e-6, .near = 1e-2, .most = SL_SYMMETRY_MOST, .corners = (int64_t)1 << 23};
+    return (sl_symmetry_def){
+        .exact = 1e-6, .lengths = 1e-3, .near = 1e-2, .most = SL_SYMMETRY_MOST, .corners = (int64_t)1 << 23};
 }
 
 void sl_symmetry_free(sl_symmetry *symmetry)

@@ -348,6 +348,35 @@ static void a_perturbed_symmetry_is_near_then_topological(void **state)
     }
 }
 
+/* As a text file keeps them: relative lengths differ by 1e-6 and more, positions by 1e-7 of the diagonal. */
+static void coordinates_of_six_digits_are_exact(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x6d);
+    for (int trial = 0; trial < 10 * test_multiplier(); trial++) {
+        int32_t mirror[1000];
+        double T[12];
+        model m = model_new();
+        model_planted(&m, &rng, 6, 7, trial % 2 == 0, false, mirror);
+        model_random_isometry(&rng, false, T);
+        for (int k = 0; k < 12; k++) {
+            T[k] *= 0.2;
+        }
+        model_move(&m, T);
+        for (int32_t i = 0; i < 3 * m.nv; i++) {
+            m.xyz[i] = round(m.xyz[i] * 1e6) * 1e-6;
+        }
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, 64);
+        assert_int_equal(s->nmap, 1);
+        assert_int_equal(s->map[0].kind, SL_SYMMETRY_EXACT);
+        assert_true(s->map[0].misfit > 1e-6 && s->map[0].deviation > 1e-8);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
 /* A sheet bent along a line keeps its edge lengths and is no longer symmetric. */
 static void equal_edge_lengths_do_not_make_a_bent_sheet_symmetric(void **state)
 {
@@ -390,6 +419,7 @@ int main(void)
         cmocka_unit_test(sheets_without_symmetry_have_none),
         cmocka_unit_test(one_edge_more_ends_a_symmetry),
         cmocka_unit_test(a_perturbed_symmetry_is_near_then_topological),
+        cmocka_unit_test(coordinates_of_six_digits_are_exact),
         cmocka_unit_test(equal_edge_lengths_do_not_make_a_bent_sheet_symmetric),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,11 +1,5 @@
 #include "checks.h"
 
-/* Facets [a, b) of the mesh are one component each; its number. */
-static int32_t component_at(const sl_symmetry *s, int32_t f)
-{
-    return s->component[f];
-}
-
 static void copies_moved_turned_and_mirrored_are_found(void **state)
 {
     (void)state;
@@ -21,7 +15,9 @@ static void copies_moved_turned_and_mirrored_are_found(void **state)
             begin[k] = m.nf;
             model_random_isometry(&rng, k == 2, T);
             if (k == 4) {
-                T[0] *= 1.001; /* no isometry */
+                for (int i = 0; i < 3; i++) {
+                    T[i] *= 1.001; /* no isometry */
+                }
             }
             model_repeat(&m, nf, nv, T, k == 2);
         }
@@ -31,7 +27,7 @@ static void copies_moved_turned_and_mirrored_are_found(void **state)
         sl_symmetry *s = find_all(mesh, NULL, 64);
         assert_int_equal(s->components, 5);
         for (int k = 0; k < 5; k++) {
-            component[k] = component_at(s, facet[k == 0 ? 0 : begin[k]]);
+            component[k] = s->component[facet[k == 0 ? 0 : begin[k]]];
         }
         int32_t lowest = component[0], copies = 0;
         for (int k = 1; k < 4; k++) {
