@@ -48,8 +48,16 @@ sl_status exp_draw_atlas(exp_run *run, const sl_atlas *atlas, const sl_view *vie
     scene.mesh = atlas->mesh;
     scene.triangulation = atlas->triangulation;
     scene.corner_uv = atlas->corner_uv;
-    scene.chart = atlas->segmentation->face_chart;
+    int32_t *shown = sl_alloc(atlas->mesh->nf, sizeof *shown); /* copies have the colours of their sources */
+    if (shown == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t f = 0; f < atlas->mesh->nf; f++) {
+        shown[f] = sl_chart_shown(atlas->segmentation, atlas->segmentation->face_chart[f]);
+    }
+    scene.chart = shown;
     const sl_status status = sl_render_pair(&scene, view, picture, &run->context, &image, &run->diag);
+    sl_free(shown);
     return status != SL_OK ? status : write_image(run, file, image);
 }
 
