@@ -1,95 +1,27 @@
-/* ABF++: Newton's method on the Lagrangian of Eqs. 1-4, the constraints' curvature dropped.
- *
- *     [ Lambda  J' ] [ dalpha  ]     [ grad_alpha L ]        Lambda = 2 diag(w),  L = E + lambda' g
- *     [ J       0  ] [ dlambda ] = - [ g            ]
+/* ABF++: Newton's method on the Lagrangian of Eqs. 1-4.
  *
  * alpha and then g1, whose block J1 inv(Lambda) J1' is diagonal, are eliminated; what is left, M dlambda2 = rhs, has
- * one unknown per sector and one per interior vertex and is positive definite iff J has full row rank. Source: Sheffer,
- * Levy, Mogilnitsky, Bogomyakov 2005, "ABF++: fast and robust angle based flattening". Deviations: log form of g3 by
- * default; general sectors; steps are damped so that all angles stay in (0, pi). */
+ * one unknown per sector and one per interior vertex and is positive definite iff J has full row rank, which leaving
+ * out one row per region wholly prescribed sees to. Source: Sheffer, Levy, Mogilnitsky, Bogomyakov 2005, "ABF++: fast
+ * and robust angle based flattening". Deviations: log form of g3 by default; general sectors; exact Newton as an
+ * option; steps are damped so that all angles stay in (0, pi). */
 #include "param/abf.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "param/abf_internal.h"
-#include "sparse/cholesky.h"
+#include "param/abf_solver_internal.h"
 
 static const double pi = 3.14159265358979323846;
-static const double boundary_share = 0.95; /* of the way to 0 or pi that one step may go */
-static const double shortest_step = 1e-6;  /* below this the solver has stalled */
-
-struct sl_abf {
-    const sl_patch *patch; /* borrowed */
-    sl_abf_def def;
-    sl_sector_table own_sectors; /* when the caller gave none */
-    const sl_sectors *sectors;
-    sl_abf_system system;
-    sl_cholesky *factor;
-    sl_abf_info info;
-    double *phi, *w, *d;      /* 3 nt; d = 1 / (2 w) */
-    double *alpha, *lambda1;  /* 3 nt, nt */
-    double *lambda2;          /* nrows: of g2, then of g3 */
-    double *gradient, *delta; /* 3 nt */
-    double *g1, *reduced;     /* nt */
-    double *g, *rhs;          /* nrows: g2, then g3 */
-    double *work;             /* of the Cholesky solve */
-};
-
-static double max_norm(const double *x, int64_t n)
-{
-    double largest = 0.0;
-    for (int64_t i = 0; i < n; i++) {
-        largest = fabs(x[i]) <= largest ? largest : fabs(x[i]); /* keeps a NaN */
-    }
-    return largest;
-}
-
-/* Everything that depends on alpha and lambda: J, gradient of L, residuals, info. */
-static void evaluate(sl_abf *solver)
-{
-    const sl_patch *patch = solver->patch;
-    const int64_t nc = 3 * (int64_t)patch->nt;
-    const int32_t nsectors = solver->system.nsectors;
-    sl_abf_system_linearise(&solver->system, solver->def.wheel, solver->alpha);
-    sl_abf_eval_g1(patch, solver->alpha, solver->g1);
-    sl_abf_eval_g2(solver->sectors, solver->alpha, solver->g);
-    sl_abf_eval_g3(patch, solver->def.wheel, solver->alpha, &solver->g[nsectors]);
-    double energy = 0.0, smallest = pi;
-    for (int64_t c = 0; c < nc; c++) {
-        const double off = solver->alpha[c] - solver->phi[c];
-        energy += solver->w[c] * off * off;
-        smallest = fmin(smallest, solver->alpha[c]);
-        solver->gradient[c] = 2.0 * solver->w[c] * off + solver->lambda1[c / 3];
-    }
-    sl_abf_system_apply_transposed(&solver->system, solver->lambda2, solver->gradient);
-    sl_abf_info *info = &solver->info;
-    info->energy = energy;
-    info->min_angle = smallest;
-    info->gradient = max_norm(solver->gradient, nc);
-    info->g1 = max_norm(solver->g1, patch->nt);
-    info->g2 = max_norm(solver->g, nsectors);
-    info->g3 = max_norm(&solver->g[nsectors], (int64_t)solver->system.nrows - nsectors);
-}
-
-/* Below the tolerance asked for; or, where no further step will be taken, below the one a result is accepted with. */
-static void judge(sl_abf *solver)
-{
-    sl_abf_info *info = &solver->info;
-    const sl_abf_def *def = &solver->def;
-    const bool last = info->stalled || info->iterations >= def->max_iterations;
-    const double gradient = last ? fmax(def->accept_gradient, def->gradient_tolerance) : def->gradient_tolerance;
-    info->converged = info->gradient <= gradient && info->g1 <= def->constraint_tolerance &&
-                      info->g2 <= def->constraint_tolerance && info->g3 <= def->constraint_tolerance &&
-                      info->min_angle > 0.0;
-}
 
 static sl_status allocate(sl_abf *solver)
 {
     const int64_t nt = solver->patch->nt, nrows = solver->system.nrows;
-    double **of_corners[] = {&solver->phi, &solver->w, &solver->d, &solver->alpha, &solver->gradient, &solver->delta};
-    double **of_triangles[] = {&solver->lambda1, &solver->g1, &solver->reduced};
+    double **of_corners[] = {&solver->phi,   &solver->w,        &solver->hessian,
+                             &solver->alpha, &solver->gradient, &solver->delta};
+    double **of_triangles[] = {&solver->lambda1, &solver->g1, &solver->dlambda1};
     double **of_rows[] = {&solver->lambda2, &solver->g, &solver->rhs};
     bool failed = false;
     for (size_t i = 0; i < SL_COUNTOF(of_corners); i++) {
@@ -125,6 +57,65 @@ cleanup:
     return status;
 }
 
+/* The sectors asked for, or those of interior vertices; theta is copied, so that it can be changed. */
+static sl_status adopt_sectors(sl_abf *solver)
+{
+    sl_status status = SL_OK;
+    const sl_sectors *given = solver->def.sectors;
+    if (given == NULL) {
+        SL_TRY(sl_sectors_interior(solver->patch, &solver->own_sectors));
+        given = &solver->own_sectors.view;
+    }
+    SL_TRY(sl_sectors_check(solver->patch, given, NULL));
+    solver->theta = sl_copy(given->theta, given->count, sizeof *given->theta);
+    if (solver->theta == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    solver->sectors = (sl_sectors){given->count, given->first, given->corner, solver->theta};
+cleanup:
+    return status;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The rows that depend on others, one per region wholly prescribed, ascending; *count of them, owned by the caller. */
+static sl_status find_dependent_rows(sl_abf *solver, int32_t *count, int32_t **rows)
+{
+    sl_status status = SL_OK;
+    *count = 0;
+    SL_TRY(sl_regions_init(&solver->regions, solver->patch, &solver->sectors));
+    SL_TRY(sl_regions_contradicted(&solver->regions) >= 0 ? SL_INFEASIBLE : SL_OK);
+    *rows = sl_alloc(solver->regions.count, sizeof **rows);
+    if (*rows == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t r = 0; r < solver->regions.count; r++) {
+        if (solver->regions.dependent[r] >= 0) {
+            (*rows)[(*count)++] = solver->regions.dependent[r];
+        }
+    }
+    qsort(*rows, (size_t)*count, sizeof **rows, ascending);
+cleanup:
+    return status;
+}
+
+static sl_status build_system(sl_abf *solver)
+{
+    sl_status status = SL_OK;
+    int32_t count = 0, *rows = NULL;
+    SL_TRY(adopt_sectors(solver));
+    SL_TRY(find_dependent_rows(solver, &count, &rows));
+    SL_TRY(sl_abf_system_init(&solver->system, solver->patch, &solver->sectors, count, rows));
+    solver->info.dependent = count;
+cleanup:
+    sl_free(rows);
+    return status;
+}
+
 /* alpha = phi kept inside (0, pi): where few triangles share the whole turn, phi exceeds pi. */
 static void start_angles(sl_abf *solver)
 {
@@ -132,8 +123,17 @@ static void start_angles(sl_abf *solver)
     sl_abf_targets(solver->patch, &solver->def, solver->phi, solver->w);
     for (int64_t c = 0; c < 3 * (int64_t)solver->patch->nt; c++) {
         solver->alpha[c] = fmin(fmax(solver->phi[c], low), high);
-        solver->d[c] = 0.5 / solver->w[c];
     }
+}
+
+/* A new race towards the present targets. */
+static void begin(sl_abf *solver)
+{
+    solver->info = (sl_abf_info){.dependent = solver->info.dependent};
+    solver->best_excess = INFINITY;
+    solver->steps_since_best = 0;
+    sl_abf_evaluate(solver);
+    sl_abf_judge(solver);
 }
 
 sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **out)
@@ -146,17 +146,11 @@ sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **o
     }
     solver->patch = patch;
     solver->def = *def;
-    solver->sectors = def->sectors;
-    if (def->sectors == NULL) {
-        SL_TRY(sl_sectors_interior(patch, &solver->own_sectors));
-        solver->sectors = &solver->own_sectors.view;
-    }
-    SL_TRY(sl_abf_system_init(&solver->system, patch, solver->sectors));
+    SL_TRY(build_system(solver));
     SL_TRY(allocate(solver));
     SL_TRY(analyze(solver));
     start_angles(solver);
-    evaluate(solver);
-    judge(solver);
+    begin(solver);
     *out = solver;
     solver = NULL;
 cleanup:
@@ -164,97 +158,20 @@ cleanup:
     return status;
 }
 
-/* The right-hand side of M dlambda2 = rhs; reduced[t] keeps that of the g1 rows. */
-static void reduce(sl_abf *solver)
+sl_status sl_abf_set_targets(sl_abf *solver, const double *theta)
 {
-    const sl_abf_system *system = &solver->system;
-    for (int32_t t = 0; t < solver->patch->nt; t++) {
-        const double *d = &solver->d[3 * (int64_t)t], *gradient = &solver->gradient[3 * (int64_t)t];
-        double *delta = &solver->delta[3 * (int64_t)t];
-        const double r = solver->g1[t] - (d[0] * gradient[0] + d[1] * gradient[1] + d[2] * gradient[2]);
-        const double mean = r / (d[0] + d[1] + d[2]);
-        for (int k = 0; k < 3; k++) {
-            delta[k] = d[k] * (gradient[k] + mean);
-        }
-        solver->reduced[t] = r;
-    }
-    memcpy(solver->rhs, solver->g, (size_t)system->nrows * sizeof *solver->rhs);
-    sl_abf_system_subtract(system, solver->delta, solver->rhs);
-}
-
-/* rhs holds dlambda2; delta becomes dalpha, reduced dlambda1. */
-static void substitute_back(sl_abf *solver)
-{
-    memset(solver->delta, 0, 3 * (size_t)solver->patch->nt * sizeof *solver->delta);
-    sl_abf_system_apply_transposed(&solver->system, solver->rhs, solver->delta);
-    for (int32_t t = 0; t < solver->patch->nt; t++) {
-        const double *d = &solver->d[3 * (int64_t)t], *gradient = &solver->gradient[3 * (int64_t)t];
-        double *z = &solver->delta[3 * (int64_t)t];
-        const double r = solver->reduced[t] - (d[0] * z[0] + d[1] * z[1] + d[2] * z[2]);
-        const double dlambda1 = r / (d[0] + d[1] + d[2]);
-        for (int k = 0; k < 3; k++) {
-            z[k] = -d[k] * (gradient[k] + dlambda1 + z[k]);
-        }
-        solver->reduced[t] = dlambda1;
-    }
-}
-
-/* Longest step <= 1 that goes at most boundary_share of the way to an angle of 0 or pi; 0 when a value is not finite.
- */
-static double step_length(const sl_abf *solver)
-{
-    double step = 1.0;
-    for (int64_t c = 0; c < 3 * (int64_t)solver->patch->nt; c++) {
-        const double room = solver->delta[c] < 0.0 ? solver->alpha[c] : pi - solver->alpha[c];
-        if (!isfinite(solver->delta[c])) {
-            return 0.0;
-        }
-        if (fabs(solver->delta[c]) * step > boundary_share * room) {
-            step = boundary_share * room / fabs(solver->delta[c]);
+    for (int32_t s = 0; s < solver->sectors.count; s++) {
+        if (!isfinite(theta[s])) {
+            return SL_BAD_INPUT;
         }
     }
-    return step;
-}
-
-static void advance(sl_abf *solver, double step)
-{
-    for (int64_t c = 0; c < 3 * (int64_t)solver->patch->nt; c++) {
-        solver->alpha[c] += step * solver->delta[c];
+    sl_regions_sum(&solver->regions, solver->sectors.count, theta);
+    if (sl_regions_contradicted(&solver->regions) >= 0) {
+        sl_regions_sum(&solver->regions, solver->sectors.count, solver->theta);
+        return SL_INFEASIBLE;
     }
-    for (int32_t t = 0; t < solver->patch->nt; t++) {
-        solver->lambda1[t] += step * solver->reduced[t];
-    }
-    for (int32_t r = 0; r < solver->system.nrows; r++) {
-        solver->lambda2[r] += step * solver->rhs[r];
-    }
-}
-
-/* One Newton step; where it cannot be taken the angles stay as they are. SL_OUT_OF_MEMORY at most. */
-static sl_status newton_step(sl_abf *solver)
-{
-    sl_abf_system_assemble(&solver->system, solver->d);
-    const sl_status status = sl_cholesky_factor(solver->factor, solver->system.M, NULL);
-    if (status == SL_NOT_POSITIVE_DEFINITE || status == SL_BAD_INPUT) {
-        solver->info.stalled = true;
-        judge(solver);
-        return SL_OK;
-    }
-    if (status != SL_OK) {
-        return status;
-    }
-    reduce(solver);
-    sl_cholesky_solve(solver->factor, solver->rhs, 1, solver->work);
-    substitute_back(solver);
-    const double step = step_length(solver);
-    solver->info.step = step;
-    if (step < shortest_step) {
-        solver->info.stalled = true;
-    } else {
-        advance(solver, step);
-        solver->info.iterations++;
-        evaluate(solver);
-    }
-    judge(solver);
+    memmove(solver->theta, theta, (size_t)solver->sectors.count * sizeof *theta);
+    begin(solver);
     return SL_OK;
 }
 
@@ -267,7 +184,7 @@ sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context)
             break;
         }
         SL_TRY(sl_report_progress(context, "abf", (double)i / n));
-        SL_TRY(newton_step(solver));
+        SL_TRY(sl_abf_newton_step(solver));
     }
 cleanup:
     return status;
@@ -283,22 +200,18 @@ const double *sl_abf_angles(const sl_abf *solver)
     return solver->alpha;
 }
 
-sl_abf_view sl_abf_view_of(const sl_abf *solver)
-{
-    return (sl_abf_view){solver->lambda1, solver->lambda2, solver->gradient, solver->phi, solver->w, &solver->system};
-}
-
 void sl_abf_free(sl_abf *solver)
 {
     if (solver == NULL) {
         return;
     }
     sl_sectors_clear(&solver->own_sectors);
+    sl_regions_clear(&solver->regions);
     sl_abf_system_clear(&solver->system);
     sl_cholesky_free(solver->factor);
-    double *arrays[] = {solver->phi,     solver->w,        solver->d,     solver->alpha, solver->lambda1,
-                        solver->lambda2, solver->gradient, solver->delta, solver->g1,    solver->reduced,
-                        solver->g,       solver->rhs,      solver->work};
+    double *arrays[] = {solver->theta,    solver->phi,     solver->w,        solver->hessian, solver->alpha,
+                        solver->lambda1,  solver->lambda2, solver->gradient, solver->delta,   solver->g1,
+                        solver->dlambda1, solver->g,       solver->rhs,      solver->work};
     for (size_t i = 0; i < SL_COUNTOF(arrays); i++) {
         sl_free(arrays[i]);
     }

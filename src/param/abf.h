@@ -8,6 +8,7 @@
 
 #include "base/context.h"
 #include "mesh/patch.h"
+#include "sparse/csc.h"
 
 /* Runs of corners with a prescribed sum of planar angles; see sl_abf_eval_g2. */
 typedef struct sl_sectors {
@@ -23,18 +24,26 @@ typedef enum sl_abf_energy {
 } sl_abf_energy;
 
 typedef enum sl_abf_wheel {
-    SL_ABF_LOG,    /* g3 = sum log sin - sum log sin (default) */
-    SL_ABF_PRODUCT /* g3 = prod sin - prod sin, as ABF++ publishes it */
+    SL_ABF_LOG,     /* g3 = sum log sin - sum log sin (default) */
+    SL_ABF_PRODUCT, /* g3 = prod sin - prod sin, as ABF++ publishes it */
+    SL_ABF_RATIO    /* g3 = prod (sin / sin) - 1, the paper's Eq. 4 */
 } sl_abf_wheel;
+
+typedef enum sl_abf_newton {
+    SL_ABF_DROPPED, /* the constraints' curvature is left out of the Hessian, as ABF++ does (default) */
+    SL_ABF_EXACT    /* it is kept, but in triangles where the Hessian would not be positive definite: info.fallbacks */
+} sl_abf_newton;
 
 typedef struct sl_abf_def {
     sl_abf_energy energy;
     sl_abf_wheel wheel;
+    sl_abf_newton newton;
     const sl_sectors *sectors;   /* borrowed; NULL (default) = one sector of 2 pi per interior vertex */
     int32_t max_iterations;      /* Newton steps; default 40 */
     double gradient_tolerance;   /* stop at |g| <= this, the max norm of the Lagrangian's gradient; default 1e-6 */
     double accept_gradient;      /* a result is accepted below this; default 1e-5 */
-    double constraint_tolerance; /* and with max |g1|, |g2|, |g3| below this [rad, 1]; default 1e-9 */
+    double constraint_tolerance; /* and with max |g1|, |g2|, |g3| below this [rad, 1]; default 1e-11 */
+    double accept_constraint;    /* a result at the rounding floor is accepted below this [rad, 1]; default 1e-9 */
     double min_angle;            /* measured angles are clamped up to this [rad]; default 0.1 degree */
 } sl_abf_def;
 
@@ -49,19 +58,45 @@ typedef struct sl_abf_info {
     double g1, g2, g3; /* max norms of the residuals */
     double min_angle;  /* [rad] */
     double step;       /* length of the last step taken, 1 = full Newton */
+    int32_t fallbacks; /* SL_ABF_EXACT: triangles whose curvature was dropped in the last step */
+    int32_t dependent; /* rows of g2 that follow from the others (regions wholly prescribed) and are left out of the
+                          system; their residuals count in g2 all the same */
+    bool floor;        /* stopped where rounding keeps the residuals from falling further */
 } sl_abf_info;
+
+/* How large the linear algebra is. J: rows g1, g2, g3 over the angles; M: the Schur complement, one triangle stored. */
+typedef struct sl_abf_sizes {
+    int32_t angles, triangles, sectors, wheels; /* columns of J; rows of g1, g2, g3 */
+    int64_t jacobian_nonzeros, schur_nonzeros, factor_nonzeros;
+    int32_t schur_rows;
+} sl_abf_sizes;
 
 typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
 
-/* SL_INFEASIBLE (a sector without corners), SL_BAD_INPUT (sectors with a corner out of range, a theta not finite, first
+/* SL_INFEASIBLE (a sector without corners, a region whose sectors contradict Gauss-Bonnet: sl_sectors_feasible says
+ * which), SL_BAD_INPUT (sectors with a corner out of range, a theta not finite, first
  * not ascending), SL_OUT_OF_MEMORY. On failure *out is NULL. */
 SL_NODISCARD sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **out);
+
+/* New prescribed sums theta (sectors->count, copied) for the same sectors: the warm start of a drag. Angles,
+ * multipliers and the symbolic analysis stay; converged, stalled and the count of iterations begin anew. SL_BAD_INPUT
+ * (not finite), SL_INFEASIBLE (a region's sum contradicts Gauss-Bonnet); the solver is then unchanged. */
+SL_NODISCARD sl_status sl_abf_set_targets(sl_abf *solver, const double *theta);
 
 /* Up to n Newton steps; stops early when converged or stalled. Allocates nothing. SL_CANCELLED. */
 SL_NODISCARD sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context);
 
 const sl_abf_info *sl_abf_info_of(const sl_abf *solver); /* borrowed */
 const double *sl_abf_angles(const sl_abf *solver);       /* 3 nt planar angles [rad], borrowed */
+sl_abf_sizes sl_abf_sizes_of(const sl_abf *solver);
+
+/* The Jacobian at the present angles: (nt + sectors + wheels) x 3 nt, rows g1, g2, g3; owned by the caller
+ * (sl_csc_free). SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_abf_jacobian(const sl_abf *solver, sl_csc **out);
+
+/* The Schur complement of the last step, lower triangle, rows g2 then g3 (a dependent row is that of the identity);
+ * borrowed, valid until the next step. */
+const sl_csc *sl_abf_schur(const sl_abf *solver);
 
 void sl_abf_free(sl_abf *solver); /* NULL is a no-op */
 

@@ -5,13 +5,13 @@
 #include "geom/vec3.h"
 #include "param/abf_internal.h"
 
-/* Products of sin alpha_next and of sin alpha_prev around every interior vertex, or 1 in log form: the gradient of the
- * product form is the log form's with each side multiplied by its product. */
+/* What each side of a wheel's gradient is multiplied by: the gradient of the product form is the log form's with each
+ * side times its product of sines, that of the ratio form the log form's times the quotient of the two. */
 static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel, const double *alpha)
 {
     const sl_patch *patch = system->patch;
-    const int32_t base = system->nsectors;
-    for (int64_t i = 0; i < 2 * ((int64_t)system->nrows - base); i++) {
+    const int32_t base = system->nsectors, wheels = system->nrows - base;
+    for (int64_t i = 0; i < 2 * (int64_t)wheels; i++) {
         system->wheel_scale[i] = 1.0;
     }
     if (wheel == SL_ABF_LOG) {
@@ -20,8 +20,10 @@ static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel, const double
     for (int32_t c = 0; c < 3 * patch->nt; c++) {
         const int32_t row = system->wheel_row[patch->tri[c]];
         if (row >= 0) {
-            system->wheel_scale[2 * ((int64_t)row - base)] *= sin(alpha[sl_corner_next(c)]);
-            system->wheel_scale[2 * ((int64_t)row - base) + 1] *= sin(alpha[sl_corner_prev(c)]);
+            double *scale = &system->wheel_scale[2 * ((int64_t)row - base)];
+            const double next = sin(alpha[sl_corner_next(c)]), prev = sin(alpha[sl_corner_prev(c)]);
+            scale[0] *= wheel == SL_ABF_PRODUCT ? next : next / prev;
+            scale[1] *= wheel == SL_ABF_PRODUCT ? prev : next / prev;
         }
     }
 }
@@ -50,21 +52,22 @@ void sl_abf_system_linearise(sl_abf_system *system, sl_abf_wheel wheel, const do
     }
 }
 
-void sl_abf_system_assemble(sl_abf_system *system, const double *d)
+void sl_abf_system_assemble(sl_abf_system *system, const double *Lambda)
 {
     double *val = system->M->val;
     memset(val, 0, (size_t)system->M->colptr[system->nrows] * sizeof *val);
+    for (int32_t i = 0; i < system->ndropped; i++) {
+        val[system->M->colptr[system->dropped[i]]] = 1.0;
+    }
     for (int32_t t = 0; t < system->patch->nt; t++) {
-        const double *dt = &d[3 * (int64_t)t];
-        const double total = 1.0 / (dt[0] + dt[1] + dt[2]);
+        const double *Lambda_t = &Lambda[3 * (int64_t)t];
+        const double inverse_det = sl_abf_inverse_det(Lambda_t);
         const double *coeff = &system->coeff[3 * system->first[t]];
         const int64_t m = system->first[t + 1] - system->first[t];
         const int64_t *slot = &system->slot[system->slot_first[t]];
         for (int64_t i = 0; i < m; i++) {
-            const double *c = &coeff[3 * i];
-            const double dc[3] = {dt[0] * c[0], dt[1] * c[1], dt[2] * c[2]};
-            const double mean = (dc[0] + dc[1] + dc[2]) * total;
-            const double y[3] = {dc[0] - dt[0] * mean, dc[1] - dt[1] * mean, dc[2] - dt[2] * mean}; /* P c */
+            double y[3];
+            sl_abf_project(Lambda_t, inverse_det, &coeff[3 * i], y);
             for (int64_t j = 0; j <= i; j++) {
                 val[*slot++] += sl_vec3_dot(&coeff[3 * j], y);
             }

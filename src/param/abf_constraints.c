@@ -55,18 +55,24 @@ static double wheel_residual(const sl_patch *patch, int32_t v, sl_abf_wheel whee
 {
     const int32_t start = patch->outgoing[v];
     int32_t c = start;
-    double sum = 0.0, next = 1.0, prev = 1.0;
+    double sum = 0.0, ratio = 1.0, next = 1.0, prev = 1.0;
     do {
         const double s_next = sin(alpha[sl_corner_next(c)]), s_prev = sin(alpha[sl_corner_prev(c)]);
-        if (wheel == SL_ABF_LOG) {
+        switch (wheel) {
+        case SL_ABF_LOG:
             sum += log(s_next / s_prev);
-        } else {
+            break;
+        case SL_ABF_PRODUCT:
             next *= s_next;
             prev *= s_prev;
+            break;
+        case SL_ABF_RATIO:
+            ratio *= s_next / s_prev;
+            break;
         }
         c = sl_corner_rotate(patch, c);
     } while (c != start);
-    return wheel == SL_ABF_LOG ? sum : next - prev;
+    return wheel == SL_ABF_LOG ? sum : wheel == SL_ABF_PRODUCT ? next - prev : ratio - 1.0;
 }
 
 /**
@@ -74,8 +80,9 @@ static double wheel_residual(const sl_patch *patch, int32_t v, sl_abf_wheel whee
  *
  *     log form:      g3[v] = sum over triangles around v of  log sin alpha_next - log sin alpha_prev
  *     product form:  g3[v] = prod over them of sin alpha_next  -  prod of sin alpha_prev
+ *     ratio form:    g3[v] = prod over them of sin alpha_next / sin alpha_prev  -  1
  *
- * alpha_next, alpha_prev: the corners after and before the one at v. Both vanish iff the edges around v close up.
+ * alpha_next, alpha_prev: the corners after and before the one at v. All vanish iff the edges around v close up.
  *
  * @param[in]  alpha planar corner angles [rad], length 3 nt, in (0, pi)
  * @param[out] g3    residuals, one per interior vertex, must not overlap alpha

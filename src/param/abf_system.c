@@ -13,12 +13,24 @@ typedef struct incidence {
     int32_t *last;     /* nrows: scratch */
 } incidence;
 
+/* Is row s among the dropped ones? *next: how many of these came before it. */
+static bool skips_row(const sl_abf_system *system, int32_t s, int32_t *next)
+{
+    const bool skips = *next < system->ndropped && system->dropped[*next] == s;
+    *next += skips;
+    return skips;
+}
+
 /* Most entries a triangle can have: one per sector corner and one per interior vertex. */
 static void count_entries(sl_abf_system *system)
 {
     const sl_patch *patch = system->patch;
+    int32_t next = 0;
     memset(system->first, 0, ((size_t)patch->nt + 1) * sizeof *system->first);
     for (int32_t s = 0; s < system->nsectors; s++) {
+        if (skips_row(system, s, &next)) {
+            continue;
+        }
         for (int32_t p = system->sectors->first[s]; p < system->sectors->first[s + 1]; p++) {
             system->first[system->sectors->corner[p] / 3 + 1]++;
         }
@@ -49,7 +61,11 @@ static int64_t find_or_add(sl_abf_system *system, int32_t t, int32_t row, int64_
 static void fill_entries(sl_abf_system *system, int64_t *used)
 {
     const sl_patch *patch = system->patch;
+    int32_t next = 0;
     for (int32_t s = 0; s < system->nsectors; s++) {
+        if (skips_row(system, s, &next)) {
+            continue;
+        }
         for (int32_t p = system->sectors->first[s]; p < system->sectors->first[s + 1]; p++) {
             const int32_t c = system->sectors->corner[p];
             system->coeff[3 * find_or_add(system, c / 3, s, &used[c / 3]) + c % 3] += 1.0;
@@ -159,9 +175,43 @@ static sl_status incidence_init(incidence *inc, const sl_abf_system *system)
     return SL_OK;
 }
 
+/* The entry (r, q) of M's pattern, appended to column q when it is new. */
+static int64_t visit_entry(incidence *inc, int32_t r, int32_t q, int32_t *row_out)
+{
+    if (inc->last[q] != r) {
+        inc->last[q] = r;
+        if (row_out != NULL) {
+            row_out[inc->fill[q]] = r;
+        }
+        inc->fill[q]++;
+    }
+    return inc->fill[q] - 1;
+}
+
+/* Row r of M: the columns q <= r it shares triangle t with. */
+static void visit_triangle(sl_abf_system *system, incidence *inc, int32_t t, int32_t r, int32_t *row_out)
+{
+    const int32_t *row = &system->row[system->first[t]];
+    const int64_t m = system->first[t + 1] - system->first[t];
+    int64_t i = 0;
+    while (row[i] != r) {
+        i++;
+    }
+    for (int64_t j = 0; j < m; j++) {
+        if (row[j] > r) {
+            continue;
+        }
+        const int64_t entry = visit_entry(inc, r, row[j], row_out);
+        if (row_out != NULL) {
+            const int64_t hi = i > j ? i : j, lo = i > j ? j : i;
+            system->slot[system->slot_first[t] + hi * (hi + 1) / 2 + lo] = entry;
+        }
+    }
+}
+
 /* Visits the rows r of M in ascending order and the columns q <= r they share a triangle with: so every column of the
  * lower triangle is met with ascending rows and needs no sorting. fill[q] counts column q's entries (from start[q]);
- * with slots wanted, each pair of a triangle is told its position. */
+ * with slots wanted, each pair of a triangle is told its position. A dropped row has its diagonal alone. */
 static void visit_pattern(sl_abf_system *system, incidence *inc, const int64_t *start, int32_t *row_out)
 {
     for (int32_t r = 0; r < system->nrows; r++) {
@@ -169,31 +219,11 @@ static void visit_pattern(sl_abf_system *system, incidence *inc, const int64_t *
         inc->last[r] = -1;
     }
     for (int32_t r = 0; r < system->nrows; r++) {
+        if (inc->first[r] == inc->first[r + 1]) {
+            visit_entry(inc, r, r, row_out);
+        }
         for (int64_t e = inc->first[r]; e < inc->first[r + 1]; e++) {
-            const int32_t t = inc->triangle[e];
-            const int32_t *row = &system->row[system->first[t]];
-            const int64_t m = system->first[t + 1] - system->first[t];
-            int64_t i = 0;
-            while (row[i] != r) {
-                i++;
-            }
-            for (int64_t j = 0; j < m; j++) {
-                const int32_t q = row[j];
-                if (q > r) {
-                    continue;
-                }
-                if (inc->last[q] != r) {
-                    inc->last[q] = r;
-                    if (row_out != NULL) {
-                        row_out[inc->fill[q]] = r;
-                    }
-                    inc->fill[q]++;
-                }
-                if (row_out != NULL) {
-                    const int64_t hi = i > j ? i : j, lo = i > j ? j : i;
-                    system->slot[system->slot_first[t] + hi * (hi + 1) / 2 + lo] = inc->fill[q] - 1;
-                }
-            }
+            visit_triangle(system, inc, inc->triangle[e], r, row_out);
         }
     }
 }
@@ -225,11 +255,14 @@ cleanup:
     return status;
 }
 
-sl_status sl_abf_system_init(sl_abf_system *system, const sl_patch *patch, const sl_sectors *sectors)
+sl_status sl_abf_system_init(sl_abf_system *system, const sl_patch *patch, const sl_sectors *sectors, int32_t ndropped,
+                             const int32_t *dropped)
 {
     sl_status status = SL_OK;
-    *system = (sl_abf_system){.patch = patch, .sectors = sectors, .nsectors = sectors->count};
+    *system = (sl_abf_system){.patch = patch, .sectors = sectors, .nsectors = sectors->count, .ndropped = ndropped};
     SL_TRY(sl_sectors_check(patch, sectors, NULL));
+    system->dropped = sl_copy(dropped, ndropped, sizeof *dropped);
+    SL_TRY(system->dropped != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     SL_TRY(number_wheels(system));
     SL_TRY(build_rows(system));
     SL_TRY(build_pattern(system));
@@ -250,6 +283,7 @@ void sl_abf_system_clear(sl_abf_system *system)
     sl_free(system->slot_first);
     sl_free(system->slot);
     sl_free(system->wheel_scale);
+    sl_free(system->dropped);
     sl_csc_free(system->M);
     *system = (sl_abf_system){0};
 }

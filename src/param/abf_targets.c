@@ -12,11 +12,13 @@ sl_abf_def sl_abf_default(void)
     return (sl_abf_def){
         .energy = SL_ABF_WEIGHTED,
         .wheel = SL_ABF_LOG,
+        .newton = SL_ABF_DROPPED,
         .sectors = NULL,
         .max_iterations = 40,
         .gradient_tolerance = 1e-6,
         .accept_gradient = 1e-5,
-        .constraint_tolerance = 1e-9,
+        .constraint_tolerance = 1e-11,
+        .accept_constraint = 1e-9,
         .min_angle = 0.1 * 3.14159265358979323846 / 180.0,
     };
 }

@@ -129,8 +129,9 @@ static void angles_do_not_change_when_the_chart_is_moved_or_scaled(void **state)
     }
 }
 
-/* Border angles whose sum contradicts Gauss-Bonnet: never converges, angles stay positive, and says so. */
-static void impossible_border_angles_are_reported_as_not_converged(void **state)
+/* Border angles whose sum contradicts Gauss-Bonnet are refused; the right sum with an angle that cannot be is not seen
+ * by it: the solver stops with positive angles and says so. */
+static void impossible_border_angles_are_refused_or_reported(void **state)
 {
     (void)state;
     sl_patch *patch = chart_hexagon(3, 0.1, chart_cap, 0.7, 0x1b);
@@ -152,10 +153,14 @@ static void impossible_border_angles_are_reported_as_not_converged(void **state)
     const sl_sectors sectors = {n, first, corner, theta};
     sl_abf_def def = sl_abf_default();
     def.sectors = &sectors;
-    sl_abf *solver = solve(patch, &def);
-    const sl_abf_info *info = sl_abf_info_of(solver);
-    assert_false(info->converged);
-    assert_true(info->min_angle > 0.0 && isfinite(info->energy));
+    sl_abf *solver = NULL;
+    assert_int_equal(sl_abf_create(patch, &def, &solver), SL_INFEASIBLE);
+    assert_null(solver);
+    theta[n - 1] += 7.0 * PI;                                     /* 18 right angles turn by 9 pi, a border by 2 pi */
+    assert_int_equal(sl_abf_create(patch, &def, &solver), SL_OK); /* the sum is right: what remains is for the solver */
+    assert_int_equal(sl_abf_info_of(solver)->dependent, 1);
+    assert_int_equal(sl_abf_step(solver, def.max_iterations, NULL), SL_OK);
+    assert_false(sl_abf_info_of(solver)->converged); /* no angle is that large */
     for (int32_t c = 0; c < 3 * patch->nt; c++) {
         assert_true(sl_abf_angles(solver)[c] > 0.0 && sl_abf_angles(solver)[c] < PI);
     }
@@ -207,15 +212,43 @@ static void dependent_sectors_stall_or_converge_but_never_lie(void **state)
     sl_patch_free(patch);
 }
 
-/* A sector of one whole triangle repeats its g1: a row of zeros in the Schur complement, exactly so with w = 1. */
-static void a_dependent_constraint_stalls_and_is_judged_by_its_residual(void **state)
+/* A sector of one whole triangle repeats its g1: its row is left out, and its sum must be pi. */
+static void a_row_that_repeats_another_is_left_out_or_refused(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_grid(3, 3, 0.2, chart_bumps, 0.9, 0xd1);
+    static const int32_t first[] = {0, 3, 5}, corner[] = {15, 16, 17, 4, 9};
+    for (int contradictory = 0; contradictory < 2; contradictory++) {
+        const double theta[] = {contradictory != 0 ? PI + 1e-6 : PI, 2.3};
+        const sl_sectors sectors = {2, first, corner, theta};
+        sl_abf_def def = sl_abf_default();
+        def.sectors = &sectors;
+        if (contradictory != 0) {
+            sl_abf *solver;
+            assert_int_equal(sl_abf_create(patch, &def, &solver), SL_INFEASIBLE);
+            continue;
+        }
+        sl_abf *solver = solve(patch, &def);
+        const sl_abf_info *info = sl_abf_info_of(solver);
+        assert_true(info->converged && !info->stalled && info->dependent == 1 && info->g2 <= 1e-14);
+        assert_int_equal(sl_abf_set_targets(solver, (double[]){PI + 1e-6, 2.3}), SL_INFEASIBLE);
+        assert_int_equal(sl_abf_set_targets(solver, (double[]){NAN, 2.3}), SL_BAD_INPUT);
+        assert_true(info->converged); /* unchanged */
+        sl_abf_free(solver);
+    }
+    sl_patch_free(patch);
+}
+
+/* Corners taken twice are not looked through: a sector of one whole triangle, given twice, is a row of zeros in M,
+ * exactly so with w = 1. */
+static void a_singular_system_stalls_and_is_judged_by_its_residual(void **state)
 {
     (void)state;
     sl_patch *patch = chart_grid(3, 3, 0.2, chart_plane, 0.3, 0xd1);
-    static const int32_t first[] = {0, 3}, corner[] = {15, 16, 17};
+    static const int32_t first[] = {0, 3, 6}, corner[] = {15, 16, 17, 15, 16, 17};
     for (int contradictory = 0; contradictory < 2; contradictory++) {
-        const double theta[] = {contradictory != 0 ? 3.0 : PI};
-        const sl_sectors sectors = {1, first, corner, theta};
+        const double theta[] = {PI, contradictory != 0 ? 3.0 : PI};
+        const sl_sectors sectors = {2, first, corner, theta};
         sl_abf_def def = sl_abf_default();
         def.sectors = &sectors;
         def.energy = SL_ABF_UNWEIGHTED;
@@ -227,6 +260,108 @@ static void a_dependent_constraint_stalls_and_is_judged_by_its_residual(void **s
         assert_true(info->stalled && info->iterations == 0);
         assert_true(info->converged == (contradictory == 0)); /* acceptable as it stands */
         sl_abf_free(solver);
+    }
+    sl_patch_free(patch);
+}
+
+/* Five-degree drags of two steps each track the angle; sixty degrees at once need more, and no allocation. */
+static void drags_start_from_the_present_angles(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(6, 0.15, chart_cap, 0.9, 0xd4);
+    sl_sector_table table = make_sectors(patch, true);
+    sl_abf_def def = sl_abf_default();
+    def.sectors = &table.view;
+    sl_abf *solver = solve(patch, &def), *fresh = NULL;
+    const int32_t last = table.view.count - 1;
+    double *theta = malloc((size_t)table.view.count * sizeof *theta);
+    memcpy(theta, table.theta, (size_t)table.view.count * sizeof *theta);
+    for (int drag = 0; drag < 12; drag++) {
+        theta[last] -= 5.0 * PI / 180.0;
+        assert_int_equal(sl_abf_set_targets(solver, theta), SL_OK);
+        assert_true(test_near(sl_abf_info_of(solver)->g2, 5.0 * PI / 180.0, 1e-9));
+        assert_int_equal(sl_abf_step(solver, 2, NULL), SL_OK);
+        assert_true(sl_abf_info_of(solver)->iterations == 2 && sl_abf_info_of(solver)->g2 <= 1e-12);
+        assert_true(sl_abf_info_of(solver)->gradient < 5e-3 && sl_abf_info_of(solver)->g3 < 5e-5);
+    }
+    assert_int_equal(sl_abf_step(solver, 40, NULL), SL_OK); /* the release */
+    assert_true(sl_abf_info_of(solver)->converged);
+    table.theta[last] = theta[last];
+    fresh = solve(patch, &def);
+    assert_true(sl_abf_info_of(fresh)->converged);
+    assert_true(chart_max_diff(sl_abf_angles(solver), sl_abf_angles(fresh), 3 * patch->nt) <= 1e-6);
+    sl_abf_free(solver);
+    sl_abf_free(fresh);
+    sl_sectors_clear(&table);
+    free(theta);
+    sl_patch_free(patch);
+}
+
+/* A tolerance below what doubles can hold ends at the floor, with a word, and is accepted by the wider one. */
+static void the_rounding_floor_ends_the_iteration_with_a_word(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(5, 0.2, chart_cap, 1.2, 0xf1);
+    sl_abf_def def = sl_abf_default();
+    def.constraint_tolerance = 1e-19;
+    def.max_iterations = 100;
+    sl_abf *solver = solve(patch, &def);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    assert_true(info->converged && info->floor && info->iterations < 60);
+    assert_true(info->g1 < 1e-14 && info->g2 < 1e-14 && info->g3 < 1e-13);
+    sl_abf_free(solver);
+    sl_patch_free(patch);
+}
+
+/* J by its product with a random vector against the residuals' differences, and M against what was promised of it. */
+static void the_matrices_shown_are_those_of_the_system(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3a);
+    sl_patch *patch = chart_grid(5, 4, 0.2, chart_bumps, 1.0, 0x3a);
+    const int32_t nc = 3 * patch->nt;
+    for (int form = 0; form < 3; form++) {
+        sl_sector_table table = make_sectors(patch, true);
+        sl_abf_def def = sl_abf_default();
+        def.sectors = &table.view;
+        def.wheel = (sl_abf_wheel)form;
+        sl_abf *solver = make_solver(patch, &def);
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        const sl_abf_sizes sizes = sl_abf_sizes_of(solver);
+        const int32_t n = sizes.triangles + sizes.sectors + sizes.wheels;
+        sl_csc *J;
+        assert_int_equal(sl_abf_jacobian(solver, &J), SL_OK);
+        assert_int_equal(sl_csc_check(J, false), SL_OK);
+        assert_true(J->nrows == n && J->ncols == nc && sizes.angles == nc && J->colptr[nc] == sizes.jacobian_nonzeros);
+        assert_true(sl_abf_schur(solver)->nrows == sizes.schur_rows && sizes.schur_rows == n - patch->nt);
+        assert_true(sl_abf_schur(solver)->colptr[sizes.schur_rows] == sizes.schur_nonzeros);
+        assert_true(sizes.factor_nonzeros >= sizes.schur_nonzeros);
+        double *x = malloc((size_t)nc * sizeof *x), *y = malloc((size_t)n * sizeof *y), *g[2];
+        for (int32_t c = 0; c < nc; c++) {
+            x[c] = test_uniform(&rng, -1.0, 1.0);
+        }
+        sl_csc_multiply(J, x, y);
+        for (int side = 0; side < 2; side++) {
+            double *at = malloc((size_t)nc * sizeof *at);
+            for (int32_t c = 0; c < nc; c++) {
+                at[c] = sl_abf_angles(solver)[c] + (side == 0 ? -1e-5 : 1e-5) * x[c];
+            }
+            g[side] = malloc((size_t)n * sizeof(double));
+            sl_abf_eval_g1(patch, at, g[side]);
+            sl_abf_eval_g2(&table.view, at, &g[side][patch->nt]);
+            sl_abf_eval_g3(patch, def.wheel, at, &g[side][patch->nt + sizes.sectors]);
+            free(at);
+        }
+        for (int32_t r = 0; r < n; r++) {
+            assert_true(test_near(y[r], (g[1][r] - g[0][r]) / 2e-5, 1e-7));
+        }
+        free(x);
+        free(y);
+        free(g[0]);
+        free(g[1]);
+        sl_csc_free(J);
+        sl_abf_free(solver);
+        sl_sectors_clear(&table);
     }
     sl_patch_free(patch);
 }
@@ -375,10 +510,14 @@ int main(void)
         cmocka_unit_test(steps_taken_singly_give_the_same_bytes),
         cmocka_unit_test(log_and_product_form_find_the_same_angles),
         cmocka_unit_test(angles_do_not_change_when_the_chart_is_moved_or_scaled),
-        cmocka_unit_test(impossible_border_angles_are_reported_as_not_converged),
+        cmocka_unit_test(impossible_border_angles_are_refused_or_reported),
         cmocka_unit_test(an_angle_beyond_pi_stalls_with_positive_angles),
         cmocka_unit_test(dependent_sectors_stall_or_converge_but_never_lie),
-        cmocka_unit_test(a_dependent_constraint_stalls_and_is_judged_by_its_residual),
+        cmocka_unit_test(a_row_that_repeats_another_is_left_out_or_refused),
+        cmocka_unit_test(a_singular_system_stalls_and_is_judged_by_its_residual),
+        cmocka_unit_test(drags_start_from_the_present_angles),
+        cmocka_unit_test(the_rounding_floor_ends_the_iteration_with_a_word),
+        cmocka_unit_test(the_matrices_shown_are_those_of_the_system),
         cmocka_unit_test(convergence_waits_for_every_constraint),
         cmocka_unit_test(a_prescribed_border_angle_is_met),
         cmocka_unit_test(an_iteration_limit_accepts_only_small_gradients),

@@ -90,14 +90,16 @@ static void g3_is_the_gap_a_wheel_leaves(void **state)
     (void)state;
     test_rng rng = test_rng_seed(0x63);
     sl_patch *patch = chart_grid(5, 4, 0.2, chart_bumps, 1.0, 0x63);
-    double *alpha = malloc(3 * (size_t)patch->nt * sizeof *alpha), g3[12], product[12];
+    double *alpha = malloc(3 * (size_t)patch->nt * sizeof *alpha), g3[12], product[12], ratio[12];
     random_angles(patch, &rng, alpha);
     sl_abf_eval_g3(patch, SL_ABF_LOG, alpha, g3);
     sl_abf_eval_g3(patch, SL_ABF_PRODUCT, alpha, product);
+    sl_abf_eval_g3(patch, SL_ABF_RATIO, alpha, ratio);
     int32_t i = 0;
     for (int32_t v = 0; v < patch->nv; v++) {
         if (patch->border[v] == 0) {
             assert_true(test_near(exp(g3[i]), spoke_ratio(patch, v, alpha), 1e-13 * exp(fabs(g3[i]))));
+            assert_true(test_near(ratio[i] + 1.0, spoke_ratio(patch, v, alpha), 1e-13 * (ratio[i] + 1.0)));
             assert_true(fabs(g3[i]) > 1e-3 && (product[i] > 0) == (g3[i] > 0));
             i++;
         }
@@ -141,7 +143,7 @@ static void check_gradients(sl_abf_wheel wheel, double tolerance)
     sl_sector_table table;
     sl_abf_system system;
     assert_int_equal(sl_sectors_interior(patch, &table), SL_OK);
-    assert_int_equal(sl_abf_system_init(&system, patch, &table.view), SL_OK);
+    assert_int_equal(sl_abf_system_init(&system, patch, &table.view, 0, &(int32_t){0}), SL_OK);
     const size_t n = (size_t)system.nrows;
     double *alpha = malloc((size_t)nc * sizeof *alpha), *plus = malloc(n * sizeof *plus),
            *minus = malloc(n * sizeof *minus);
@@ -187,6 +189,12 @@ static void gradients_of_product_g3_match_finite_differences(void **state)
 {
     (void)state;
     check_gradients(SL_ABF_PRODUCT, 1e-9);
+}
+
+static void gradients_of_ratio_g3_match_finite_differences(void **state)
+{
+    (void)state;
+    check_gradients(SL_ABF_RATIO, 1e-7);
 }
 
 /* Law of cosines: another route to the angle. */
@@ -289,6 +297,7 @@ int main(void)
         cmocka_unit_test(constraints_vanish_for_the_angles_of_a_flat_mesh),
         cmocka_unit_test(gradients_of_g2_and_log_g3_match_finite_differences),
         cmocka_unit_test(gradients_of_product_g3_match_finite_differences),
+        cmocka_unit_test(gradients_of_ratio_g3_match_finite_differences),
         cmocka_unit_test(corner_angles_match_the_law_of_cosines),
         cmocka_unit_test(degenerate_triangles_get_angles_that_sum_to_pi),
         cmocka_unit_test(targets_fill_the_turn_around_interior_vertices),

@@ -3,6 +3,8 @@
 
 #include "param/abf_charts.h"
 
+static const int32_t no_rows[1];
+
 /* Dense J2 (nrows x nc), a row at a time through the transposed product. */
 static double *dense_jacobian(const sl_abf_system *system, int32_t nc)
 {
@@ -39,15 +41,17 @@ static void check_schur(const sl_patch *patch, const sl_sectors *sectors, sl_abf
     test_rng rng = test_rng_seed(seed);
     const int32_t nc = 3 * patch->nt;
     sl_abf_system system;
-    assert_int_equal(sl_abf_system_init(&system, patch, sectors), SL_OK);
-    double *alpha = malloc((size_t)nc * sizeof *alpha), *d = malloc((size_t)nc * sizeof *d);
+    assert_int_equal(sl_abf_system_init(&system, patch, sectors, 0, no_rows), SL_OK);
+    double *alpha = malloc((size_t)nc * sizeof *alpha), *d = malloc((size_t)nc * sizeof *d),
+           *Lambda = malloc((size_t)nc * sizeof *Lambda);
     for (int round = 0; round < 2; round++) { /* the second finds nothing left of the first */
         for (int32_t c = 0; c < nc; c++) {
             alpha[c] = test_uniform(&rng, 0.2, 2.4);
             d[c] = test_uniform(&rng, 0.01, 2.0);
+            Lambda[c] = 1.0 / d[c];
         }
         sl_abf_system_linearise(&system, wheel, alpha);
-        sl_abf_system_assemble(&system, d);
+        sl_abf_system_assemble(&system, Lambda);
         assert_int_equal(sl_csc_check(system.M, true), SL_OK);
         double *J = dense_jacobian(&system, nc);
         const sl_csc *M = system.M;
@@ -66,6 +70,7 @@ static void check_schur(const sl_patch *patch, const sl_sectors *sectors, sl_abf
     sl_abf_system_clear(&system);
     free(alpha);
     free(d);
+    free(Lambda);
 }
 
 static void schur_complement_matches_the_dense_product(void **state)
@@ -115,7 +120,7 @@ static void products_with_the_jacobian_are_adjoint(void **state)
     static const double theta[] = {3.0, 1.0};
     const sl_sectors sectors = {2, first, corner, theta};
     sl_abf_system system;
-    assert_int_equal(sl_abf_system_init(&system, patch, &sectors), SL_OK);
+    assert_int_equal(sl_abf_system_init(&system, patch, &sectors, 0, no_rows), SL_OK);
     double *x = malloc((size_t)nc * sizeof *x), *y = malloc((size_t)system.nrows * sizeof *y);
     double *Jx = calloc((size_t)system.nrows, sizeof *Jx), *Jty = calloc((size_t)nc, sizeof *Jty);
     for (int32_t c = 0; c < nc; c++) {
@@ -152,7 +157,7 @@ static void rows_stand_where_their_vertex_stands(void **state)
     sl_sector_table table;
     sl_abf_system system;
     assert_int_equal(sl_sectors_interior(patch, &table), SL_OK);
-    assert_int_equal(sl_abf_system_init(&system, patch, &table.view), SL_OK);
+    assert_int_equal(sl_abf_system_init(&system, patch, &table.view, 0, no_rows), SL_OK);
     double xyz[3 * 18];
     assert_int_equal(system.nrows, 18);
     sl_abf_system_points(&system, xyz);
@@ -176,9 +181,11 @@ static void bad_sectors_leave_nothing_behind(void **state)
     static const int32_t empty[] = {0, 2, 2}, first[] = {0, 1, 2}, corner[] = {3, 5}, outside[] = {3, 54};
     static const double theta[] = {3.0, 1.0};
     sl_abf_system system;
-    assert_int_equal(sl_abf_system_init(&system, patch, &(sl_sectors){2, empty, corner, theta}), SL_INFEASIBLE);
+    assert_int_equal(sl_abf_system_init(&system, patch, &(sl_sectors){2, empty, corner, theta}, 0, no_rows),
+                     SL_INFEASIBLE);
     assert_null(system.M);
-    assert_int_equal(sl_abf_system_init(&system, patch, &(sl_sectors){2, first, outside, theta}), SL_BAD_INPUT);
+    assert_int_equal(sl_abf_system_init(&system, patch, &(sl_sectors){2, first, outside, theta}, 0, no_rows),
+                     SL_BAD_INPUT);
     assert_null(system.wheel_row);
     sl_patch_free(patch);
 }
