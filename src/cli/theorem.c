@@ -32,7 +32,7 @@ static const cli_verb verb = {
 enum { MOST_MIRRORS = 4, DEFAULT_GRAPHS = 10000 };
 
 /* Generated meshes beyond this many facets are left to --mesh: the default run is to stay under a minute. */
-enum { MOST_FACETS = 6000 };
+enum { MOST_FACETS = 20000 };
 
 /* Triangles are paired back into quads where this share of them pairs well (as `--pair auto` does). */
 static const double pair_share = 0.9;
@@ -107,14 +107,40 @@ cleanup:
     return status;
 }
 
-/* All mirrors of a mesh in one row. */
+/* A mesh's mirrors: in one row, or in one each. */
+static sl_status add_mirrors(theorem_report *report, const char *name, bool built_in, const sl_theorem_mesh *checked)
+{
+    static const char *const kind[] = {"exact", "near", "topological"};
+    theorem_row *row;
+    char text[280];
+    if (built_in || checked->count == 0) {
+        const sl_status status = add_row(report, name, &row);
+        if (status == SL_OK) {
+            row->built_in = built_in;
+            row->result = checked->total;
+            row->skipped = checked->count == 0 ? "no mirror" : NULL;
+        }
+        return status;
+    }
+    for (int32_t k = 0; k < checked->count; k++) {
+        const sl_theorem_mirror *m = &checked->mirror[k];
+        snprintf(text, sizeof text, "%.200s %d: %s %s", name, k + 1, kind[m->kind],
+                 m->mirror ? "mirror" : "involution");
+        const sl_status status = add_row(report, text, &row);
+        if (status != SL_OK) {
+            return status;
+        }
+        row->result = m->result;
+    }
+    return SL_OK;
+}
+
 static sl_status run_mesh(theorem_options *o, const sl_polygons *polygons, const char *name, bool built_in,
                           theorem_report *report, sl_diag *diag)
 {
     const sl_theorem_def def = sl_theorem_default();
     sl_mesh *mesh = NULL;
     sl_theorem_mesh *checked = NULL;
-    theorem_row *row;
     double share = 0.0;
     int32_t *partner = NULL;
     sl_status status = SL_OK;
@@ -124,16 +150,8 @@ static sl_status run_mesh(theorem_options *o, const sl_polygons *polygons, const
     SL_TRY(sl_pair_triangles(mesh, partner, &share));
     SL_TRY(sl_theorem_check_mesh(mesh, share >= pair_share ? partner : NULL, MOST_MIRRORS, &def, &o->run.context,
                                  &checked));
-    SL_TRY(add_row(report, name, &row));
-    row->built_in = built_in;
-    row->result = checked->total;
-    if (checked->count == 0) {
-        row->skipped = "no mirror";
-    }
-    if (checked->count == 1) {
-        row->result.lowest_index = checked->mirror[0].result.lowest_index;
-    }
-    if (checked->left_out > 0) {
+    SL_TRY(add_mirrors(report, name, built_in, checked));
+    if (checked->left_out > 0 && !built_in) {
         cli_note(&o->run, "%s: %d of its %d involutions are checked", name, checked->count,
                  checked->count + checked->left_out);
     }

@@ -77,6 +77,9 @@ void theorem_print_table(const theorem_report *report)
         for (int32_t s = 0; s < SL_THEOREM_STATEMENTS; s++) {
             print_cell(&row->result.tally[s]);
         }
+        if (row->result.lowest_index >= 0) { /* one graph alone */
+            printf("  lowest antisymmetric vector: %d", row->result.lowest_index);
+        }
         printf("\n");
     }
     print_facts(report);

@@ -186,6 +186,7 @@ sl_status sl_state_axis(const sl_theorem_graph *graph, const sl_half *half, cons
         result->seams_off_axis += misses[k] ? 1 : 0;
     }
     if (any) {
+        result->antisymmetric += spaces;
         sl_theorem_count(result, SL_THEOREM_AXIS, worst);
     }
 cleanup:

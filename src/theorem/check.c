@@ -105,7 +105,6 @@ sl_status sl_theorem_check(const sl_theorem_graph *graph, const sl_theorem_def *
     SL_TRY(sl_state_fixed(graph, &solution, &r));
     SL_TRY(sl_state_joint(graph, &solution, &r));
     r.lowest_index = solution.lowest_skew;
-    r.antisymmetric = solution.vectors;
     r.largest_bound = largest_bound(&solution);
     *out = r;
 cleanup:

@@ -46,8 +46,8 @@ typedef struct sl_theorem_result {
     double largest_difference; /* of corresponding eigenvalues, over ||L||_1 */
     double largest_bound;      /* on a vector that was used */
     int64_t blocks;            /* components of the half, those that no choice of halves sets right left out */
-    int64_t seams_off_axis;    /* antisymmetric vectors whose seam misses an axis edge: "contain the axis" fails */
-    int64_t antisymmetric;     /* antisymmetric vectors looked at */
+    int64_t antisymmetric;     /* eigenspaces with antisymmetric vectors, of graphs with axis edges; of these, */
+    int64_t seams_off_axis;    /* those that vanish somewhere on the axis: "contain the axis" fails */
     int64_t crossed;           /* graphs with edges between the halves off the axis */
     int64_t crossed_one_sign;  /* of these, the lowest antisymmetric vector has one sign on the half as given */
     int64_t no_common_basis;   /* eigenspaces without a basis common to two mirrors that do not commute */
