@@ -74,13 +74,12 @@ void sl_krylov_clear(sl_krylov *k)
 
 void sl_krylov_seen(const sl_krylov *k, sl_krylov_watch *watch, double worst)
 {
-    watch->look = k->applied;
+    double pace = least_pace;
     if (watch->before > 0 && isfinite(watch->worst) && worst < watch->worst) {
-        const double blocks = (double)(k->applied - watch->before) / k->w;
-        const double pace = fmax(least_pace, log(watch->worst / worst) / blocks);
-        const double left = look_share * k->w * log(worst) / pace;
-        watch->look += left < 1e6 ? (int32_t)left : 0;
+        pace = fmax(pace, log(watch->worst / worst) * k->w / (k->applied - watch->before));
     }
+    const double left = isfinite(worst) ? look_share * k->w * log(worst) / pace : 0.0;
+    watch->look = k->applied + (int32_t)fmax(0.0, fmin(left, k->max_basis));
     watch->before = k->applied;
     watch->worst = worst;
 }
