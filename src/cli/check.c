@@ -1,6 +1,7 @@
 /* seamlab check: the repair report. */
 #include "cli/cli.h"
 
+#include "atlas/sidecar.h"
 #include "base/memory.h"
 #include "mesh/build.h"
 
@@ -58,6 +59,24 @@ static void print_report(const sl_repair_report *r)
     printf("%s\n", needs_repair(r) ? "repaired while reading; the file is untouched" : "nothing to repair");
 }
 
+/* What the sidecar beside the file says of shared charts; false: there is none, or of another mesh. */
+static bool count_copies(const char *path, int32_t nf, int32_t *charts, int32_t *copies)
+{
+    char sidecar[4096];
+    sl_sharing_table table;
+    sl_sidecar_path(path, sidecar, sizeof sidecar);
+    *copies = 0;
+    if (sl_sidecar_read(sidecar, nf, &table, NULL) != SL_OK) {
+        return false;
+    }
+    *charts = table.nchart;
+    for (int32_t c = 0; c < table.nchart; c++) {
+        *copies += table.copy_of[c] >= 0;
+    }
+    sl_sharing_table_clear(&table);
+    return true;
+}
+
 static json_t *integers(const int32_t *value, int32_t count)
 {
     json_t *list = json_array();
@@ -110,10 +129,14 @@ int cli_check(int argc, char **argv)
         code = cli_fail(&run, sl_mesh_build(&polygons, &mesh, &report, &diag), &diag);
     }
     if (code == CLI_DONE) {
+        int32_t charts, copies;
         if (run.json) {
             print_json(&report);
         } else {
             print_report(&report);
+        }
+        if (!run.json && count_copies(files[0], polygons.nf, &charts, &copies)) {
+            printf("%-28s %d charts, %d of them copies that share their texture\n", "by its sidecar", charts, copies);
         }
         code = run.strict && needs_repair(&report) ? CLI_INFEASIBLE : CLI_DONE;
     }
