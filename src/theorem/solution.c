@@ -21,101 +21,18 @@ void sl_solution_clear(sl_solution *s)
     *s = (sl_solution){0};
 }
 
-/* Where row r of a vector of the null space goes. */
-typedef struct null_space {
-    double *basis; /* n x count */
-    int32_t count;
-} null_space;
-
-/* One vector a group: weight[i] on the rows of group[i] >= 0, scaled to length 1. */
-static sl_status null_space_fill(int32_t n, const int32_t *group, const double *weight, int32_t groups, null_space *out)
-{
-    int64_t entries = 0;
-    sl_status status = sl_mul_size(n, groups, &entries);
-    double *square = sl_calloc(groups, sizeof *square);
-    out->basis = status == SL_OK ? sl_calloc(entries, sizeof *out->basis) : NULL;
-    out->count = groups;
-    SL_TRY(square != NULL && out->basis != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    for (int32_t i = 0; i < n; i++) {
-        if (group[i] >= 0) {
-            square[group[i]] += weight[i] * weight[i];
-        }
-    }
-    for (int32_t i = 0; i < n; i++) {
-        if (group[i] >= 0) {
-            out->basis[(int64_t)n * group[i] + i] = weight[i] / sqrt(square[group[i]]);
-        }
-    }
-cleanup:
-    sl_free(square);
-    return status;
-}
-
-/* Which matrix a null space is of. */
-typedef enum matrix_kind { WHOLE, SYMMETRIC, ANTISYMMETRIC } matrix_kind;
-
-/* Components of the graph; orbits of them under the mirror, numbered anew; blocks of T that touch no axis. Returns how
- * many. */
-static int32_t group_rows(const sl_theorem_graph *graph, const sl_half *half, matrix_kind kind, int32_t n,
-                          int32_t *group, double *weight, int32_t *number)
-{
-    int32_t groups = 0;
-    if (kind == ANTISYMMETRIC) {
-        for (int32_t c = 0; c < half->components; c++) {
-            number[c] = half->balanced[c] ? 0 : -1;
-        }
-        for (int32_t i = 0; i < n; i++) {
-            const bool touches = half->axis[i] > 0 || half->spokes[i] > 0;
-            number[half->component[i]] = touches ? -1 : number[half->component[i]];
-        }
-        for (int32_t c = 0; c < half->components; c++) {
-            number[c] = number[c] == 0 ? groups++ : -1;
-        }
-        for (int32_t i = 0; i < n; i++) {
-            group[i] = number[half->component[i]];
-            weight[i] = half->turn[i];
-        }
-        return groups;
-    }
-    for (int32_t c = 0; c < half->graph_parts; c++) {
-        number[c] = -1;
-    }
-    for (int32_t i = 0; i < n; i++) { /* a pair's node of half 1 stands for both */
-        const int32_t node = kind == WHOLE || i < graph->pairs ? i : i + graph->pairs;
-        const int32_t part = half->part[node];
-        if (number[part] < 0) {
-            number[part] = groups++;
-            if (kind == SYMMETRIC) {
-                number[half->part[sl_theorem_image(graph, node)]] = number[part];
-            }
-        }
-        group[i] = number[part];
-        weight[i] = kind == SYMMETRIC && i < graph->pairs ? sqrt(2.0) : 1.0;
-    }
-    return groups;
-}
-
-static sl_status solve(const sl_theorem_graph *graph, const sl_half *half, const sl_csc *A, matrix_kind kind,
+static sl_status solve(const sl_theorem_graph *graph, const sl_half *half, const sl_csc *A, sl_block_kind kind,
                        const sl_theorem_def *def, const sl_context *context, sl_pairs *out)
 {
     const int32_t n = A->ncols;
-    null_space null = {0};
+    sl_null_space null = {0};
     sl_status status = SL_OK;
-    int32_t *group = NULL, *number = NULL;
-    double *weight = NULL;
     if (sl_theorem_nodes(graph) <= def->full_nodes || n <= def->lowest) {
         return sl_pairs_solve(A, 0, NULL, 0, def->tolerance, context, out);
     }
-    group = sl_alloc(n, sizeof *group);
-    number = sl_alloc((int64_t)half->graph_parts + half->components, sizeof *number);
-    weight = sl_alloc(n, sizeof *weight);
-    SL_TRY(group != NULL && number != NULL && weight != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(null_space_fill(n, group, weight, group_rows(graph, half, kind, n, group, weight, number), &null));
+    SL_TRY(sl_null_space_create(graph, half, kind, &null));
     SL_TRY(sl_pairs_solve(A, def->lowest, null.basis, null.count, def->tolerance, context, out));
 cleanup:
-    sl_free(group);
-    sl_free(number);
-    sl_free(weight);
     sl_free(null.basis);
     return status;
 }
@@ -286,9 +203,9 @@ sl_status sl_solution_create(const sl_theorem_graph *graph, const sl_half *half,
     SL_TRY(sl_matrix_whole(graph, &s->L));
     SL_TRY(sl_matrix_symmetric(graph, &s->S));
     SL_TRY(sl_matrix_antisymmetric(graph, &s->T));
-    SL_TRY(solve(graph, half, s->L, WHOLE, def, context, &s->whole));
-    SL_TRY(solve(graph, half, s->S, SYMMETRIC, def, context, &s->symmetric));
-    SL_TRY(solve(graph, half, s->T, ANTISYMMETRIC, def, context, &s->antisymmetric));
+    SL_TRY(solve(graph, half, s->L, SL_BLOCK_WHOLE, def, context, &s->whole));
+    SL_TRY(solve(graph, half, s->S, SL_BLOCK_SYMMETRIC, def, context, &s->symmetric));
+    SL_TRY(solve(graph, half, s->T, SL_BLOCK_ANTISYMMETRIC, def, context, &s->antisymmetric));
     if (def->sabotage == SL_THEOREM_BREAK_VECTOR) {
         SL_TRY(break_vector(s));
     }

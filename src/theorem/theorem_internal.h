@@ -73,6 +73,18 @@ SL_NODISCARD sl_status sl_matrix_symmetric(const sl_theorem_graph *graph, sl_csc
 SL_NODISCARD sl_status sl_matrix_block(const sl_csc *antisymmetric, const int32_t *pair, int32_t count,
                                        const int32_t *place, sl_csc **out);
 
+/* Which matrix. */
+typedef enum sl_block_kind { SL_BLOCK_WHOLE, SL_BLOCK_SYMMETRIC, SL_BLOCK_ANTISYMMETRIC } sl_block_kind;
+
+/* Vectors of length 1 that a matrix maps to 0, one each for parts of the graph; all there are of them. */
+typedef struct sl_null_space {
+    double *basis; /* n x count, owned */
+    int32_t count;
+} sl_null_space;
+
+SL_NODISCARD sl_status sl_null_space_create(const sl_theorem_graph *graph, const sl_half *half, sl_block_kind kind,
+                                            sl_null_space *out);
+
 /* Everything solved for one graph. */
 typedef struct sl_solution {
     sl_csc *L, *S, *T; /* whole, symmetric, antisymmetric */
