@@ -78,14 +78,14 @@ static int32_t steps_for(double worst)
     return steps;
 }
 
-/* X := (1 - omega) before + omega lambda X */
+/* X := (1 - omega) before + omega (lambda - sigma) X */
 static void relax(const sl_lanczos *s, int32_t p, double omega, const double *before, double *X)
 {
     const double *lambda = s->lambda + (int64_t)p * SL_PANEL;
     for (int64_t i = 0; i < s->n; i++) {
         for (int32_t c = 0; c < SL_PANEL; c++) {
             const int64_t at = i * SL_PANEL + c;
-            X[at] = (1.0 - omega) * before[at] + omega * lambda[c] * X[at];
+            X[at] = (1.0 - omega) * before[at] + omega * (lambda[c] - s->sigma) * X[at];
         }
     }
 }
