@@ -17,7 +17,9 @@ enum {
     MIDDLE = 512,
     COARSE_ROUNDS = 10, /* for each plane; */
     MIDDLE_ROUNDS = 20, /* for the FINALISTS; */
-    ROUNDS = 60,        /* for the one chosen */
+    ROUNDS = 20,        /* for the one chosen, */
+    NEWTON_ROUNDS = 30, /* and along the surface's normals, */
+    PATIENCE = 4,       /* this many without gain at most */
     PLANES = 16,
     FINALISTS = 3,
     CHUNK = 1024
@@ -27,6 +29,7 @@ static const double KEPT = 0.8, KEPT_LAST = 0.5; /* share of the samples a plane
 static const double ALIKE = 0.9;         /* ratio of moments from which two axes have no direction of their own */
 static const double SAME_PLANE = 0.9999; /* cosine of normals */
 static const double SETTLED = 1e-13;     /* change of a normal that ends the fit */
+static const double SLIDES = 1e-9;       /* eigenvalue of the normal equations, over the largest */
 static const double ENOUGH = 0.9;        /* share of the area that has to match */
 
 typedef struct plane {
@@ -43,6 +46,7 @@ typedef struct mirror_search {
     double total, centre[3];   /* of the area */
     double axis[9], moment[3]; /* principal axes, ascending moments */
     double *sample, *image;    /* 3 SAMPLES: corners; nearest to their mirror images */
+    int32_t *triangle;         /* SAMPLES: nearest triangle */
     double *distance, *sorted; /* SAMPLES */
     int32_t samples;
 } mirror_search;
@@ -67,10 +71,11 @@ static sl_status make_tree(mirror_search *s)
     s->area = sl_alloc(s->mesh->nf, sizeof *s->area);
     s->sample = sl_alloc(3 * SAMPLES, sizeof *s->sample);
     s->image = sl_alloc(3 * SAMPLES, sizeof *s->image);
+    s->triangle = sl_alloc(SAMPLES, sizeof *s->triangle);
     s->distance = sl_alloc(SAMPLES, sizeof *s->distance);
     s->sorted = sl_alloc(SAMPLES, sizeof *s->sorted);
     if (s->vertex == NULL || s->facet == NULL || s->area == NULL || s->sample == NULL || s->image == NULL ||
-        s->distance == NULL || s->sorted == NULL) {
+        s->triangle == NULL || s->distance == NULL || s->sorted == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     for (int32_t t = 0; t < nt; t++) {
@@ -178,7 +183,7 @@ static void match_samples(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t i = begin; i < end; i++) {
         double q[3];
         mirror_point(m->p, &m->s->sample[3 * i * m->stride], q);
-        sl_nearest_find(m->s->tree, q, &m->s->image[3 * i], &m->s->distance[i]);
+        m->s->triangle[i] = sl_nearest_find(m->s->tree, q, &m->s->image[3 * i], &m->s->distance[i]);
     }
 }
 
@@ -188,22 +193,32 @@ static int compare_double(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The plane of least squares between samples and the points nearest to their mirror images: with m the mean of both,
- * sum |q - S p|^2 = const + 4 n' (sum (p - m)(q - m)') n. Fitted to the share `kept` that lies nearest. Returns the
- * change of the normal; p->score = mean distance of the kept. */
-static double refit(mirror_search *s, plane *p, int32_t count, int32_t stride, double kept)
+/* Matches samples to the surface; returns the distance within which the share `kept` of them lies. p->score = mean
+ * distance of those. */
+static double match(mirror_search *s, plane *p, int32_t count, int32_t stride, double kept)
 {
     matching m = {s, p, stride};
     sl_parallel_for(s->context, count, CHUNK / 8, match_samples, &m);
     memcpy(s->sorted, s->distance, (size_t)count * sizeof *s->sorted);
     qsort(s->sorted, (size_t)count, sizeof *s->sorted, compare_double);
     const int32_t keep = (int32_t)(kept * (count - 1)) + 1;
-    const double limit = s->sorted[keep - 1];
-    double mean[3] = {0}, product[9] = {0}, lambda[3], V[9], n = 0.0, sum = 0.0;
+    p->score = 0.0;
+    for (int32_t i = 0; i < keep; i++) {
+        p->score += s->sorted[i] / keep;
+    }
+    return s->sorted[keep - 1];
+}
+
+/* The plane of least squares between samples and the points nearest to their mirror images: with m the mean of both,
+ * sum |q - S p|^2 = const + 4 n' (sum (p - m)(q - m)') n. Fitted to the share `kept` that lies nearest. Returns the
+ * change of the normal and the offset. */
+static double refit(mirror_search *s, plane *p, int32_t count, int32_t stride, double kept)
+{
+    const double limit = match(s, p, count, stride, kept);
+    double mean[3] = {0}, product[9] = {0}, lambda[3], V[9], n = 0.0;
     for (int32_t i = 0; i < count; i++) {
         if (s->distance[i] <= limit) {
             n += 1.0;
-            sum += s->distance[i];
             for (int k = 0; k < 3; k++) {
                 mean[k] += 0.5 * (s->sample[3 * i * stride + k] + s->image[3 * i + k]);
             }
@@ -227,7 +242,6 @@ static double refit(mirror_search *s, plane *p, int32_t count, int32_t stride, d
     const double offset = sl_vec3_dot(p->normal, mean) / n;
     change = fmax(change, fabs(offset - p->offset));
     p->offset = offset;
-    p->score = sum / n;
     return change;
 }
 
@@ -242,6 +256,93 @@ static void fit_plane(mirror_search *s, plane *p, int32_t samples, int32_t round
     double change = HUGE_VAL;
     for (int32_t round = 0; round < rounds && change > SETTLED; round++) {
         change = refit(s, p, count, stride, kept);
+    }
+}
+
+/* Unit normal of the triangle that sample i was matched to; 0 for none. */
+static void surface_normal(const mirror_search *s, int32_t i, double normal[3])
+{
+    const int32_t *v = &s->vertex[3 * (int64_t)s->triangle[i]];
+    const double *a = &s->mesh->xyz[3 * (int64_t)v[0]];
+    double e[3], f[3];
+    sl_vec3_sub(&s->mesh->xyz[3 * (int64_t)v[1]], a, e);
+    sl_vec3_sub(&s->mesh->xyz[3 * (int64_t)v[2]], a, f);
+    sl_vec3_cross(e, f, normal);
+    const double norm = sl_vec3_norm(normal);
+    for (int k = 0; k < 3; k++) {
+        normal[k] = norm > 0.0 ? normal[k] / norm : 0.0;
+    }
+}
+
+/* Normal equations of the distances along the surface's normals nu, r = nu . (q - S p), in the turns x0, x1 of the
+ * mirror's normal n towards e and f and the change x2 of its offset d:
+ *     dr = 2 ((x0 e + x1 f) . p - x2) (nu . n) + 2 (n . p - d) nu . (x0 e + x1 f). */
+static void assemble(const mirror_search *s, const plane *p, double limit, const double frame[9], double N[9],
+                     double g[3])
+{
+    memset(N, 0, 9 * sizeof *N);
+    memset(g, 0, 3 * sizeof *g);
+    for (int32_t i = 0; i < s->samples; i++) {
+        const double *x = &s->sample[3 * i];
+        double nu[3], gap[3], J[3];
+        if (s->distance[i] > limit) {
+            continue;
+        }
+        surface_normal(s, i, nu);
+        mirror_point(p, x, gap);
+        sl_vec3_sub(&s->image[3 * i], gap, gap);
+        const double r = sl_vec3_dot(nu, gap), along = sl_vec3_dot(nu, p->normal);
+        const double height = sl_vec3_dot(p->normal, x) - p->offset;
+        for (int k = 0; k < 2; k++) {
+            J[k] = 2.0 * (sl_vec3_dot(&frame[3 * k], x) * along + height * sl_vec3_dot(nu, &frame[3 * k]));
+        }
+        J[2] = -2.0 * along;
+        for (int k = 0; k < 9; k++) {
+            N[k] += J[k / 3] * J[k % 3];
+        }
+        for (int k = 0; k < 3; k++) {
+            g[k] += J[k] * r;
+        }
+    }
+}
+
+/* One Gauss-Newton step; directions in which the surface slides along itself are left alone. */
+static void newton_step(const mirror_search *s, plane *p, double limit)
+{
+    double frame[9], product[9], unused[3], N[9], g[3], lambda[3], V[9], x[3] = {0};
+    for (int k = 0; k < 9; k++) { /* the eigenvectors of I + n n' are a frame, n the last */
+        product[k] = (k % 4 == 0) + p->normal[k / 3] * p->normal[k % 3];
+    }
+    sl_eigen3(product, unused, frame);
+    assemble(s, p, limit, frame, N, g);
+    sl_eigen3(N, lambda, V);
+    for (int k = 0; k < 3; k++) {
+        const double c = lambda[k] > SLIDES * lambda[2] ? -sl_vec3_dot(&V[3 * k], g) / lambda[k] : 0.0;
+        for (int i = 0; i < 3; i++) {
+            x[i] += c * V[3 * k + i];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        p->normal[i] += x[0] * frame[i] + x[1] * frame[3 + i];
+    }
+    const double norm = sl_vec3_norm(p->normal);
+    for (int i = 0; i < 3; i++) {
+        p->normal[i] /= norm;
+    }
+    p->offset = (p->offset + x[2]) / norm;
+}
+
+/* Distances along the normals converge where nearest points creep along the surface. The best plane met is kept. */
+static void polish_plane(mirror_search *s, plane *best)
+{
+    plane p = *best;
+    int32_t worse = 0;
+    best->score = HUGE_VAL;
+    for (int32_t round = 0; round < NEWTON_ROUNDS && worse < PATIENCE; round++) {
+        const double limit = match(s, &p, s->samples, 1, KEPT_LAST);
+        worse = p.score < best->score ? 0 : worse + 1;
+        *best = p.score < best->score ? p : *best;
+        newton_step(s, &p, limit);
     }
 }
 
@@ -264,6 +365,7 @@ static sl_status find_plane(mirror_search *s, plane *best)
     qsort(list, (size_t)finalists, sizeof *list, compare_planes);
     *best = list[0];
     fit_plane(s, best, SAMPLES, ROUNDS, KEPT_LAST);
+    polish_plane(s, best);
 cleanup:
     return status;
 }
@@ -395,6 +497,7 @@ cleanup:
     sl_free(s.area);
     sl_free(s.sample);
     sl_free(s.image);
+    sl_free(s.triangle);
     sl_free(s.distance);
     sl_free(s.sorted);
     return status;

@@ -15,6 +15,55 @@ static inline sl_symmetry *find_all(const sl_mesh *mesh, const int32_t *partner,
     return s;
 }
 
+static inline double corner_distance(const sl_mesh *m, int32_t g, int32_t h)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double d = m->xyz[3 * m->origin[g] + k] - m->xyz[3 * m->origin[h] + k];
+        sum += d * d;
+    }
+    return sqrt(sum);
+}
+
+/* Misfit and deviation by their definitions. */
+static inline void check_geometry(const sl_mesh *m, const sl_symmetry *s, const sl_symmetry_map *map)
+{
+    double misfit = 0.0, deviation = 0.0, low[3], high[3], extent = 0.0;
+    for (int k = 0; k < 3; k++) {
+        low[k] = HUGE_VAL;
+        high[k] = -HUGE_VAL;
+    }
+    for (int32_t h = 0; h < m->nh; h++) {
+        for (int k = 0; k < 3 && s->component[m->face[h]] == map->from; k++) {
+            low[k] = fmin(low[k], m->xyz[3 * m->origin[h] + k]);
+            high[k] = fmax(high[k], m->xyz[3 * m->origin[h] + k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        extent += (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    extent = sqrt(extent);
+    for (int32_t h = 0; h < m->nh; h++) {
+        if (s->component[m->face[h]] == map->from) {
+            const int32_t next = sl_next(m, h), to = sl_symmetry_image_corner(m, s, map, h);
+            const double a = corner_distance(m, h, next);
+            const double b = corner_distance(m, to, sl_symmetry_image_corner(m, s, map, next));
+            const double *T = map->isometry, *p = &m->xyz[3 * m->origin[h]], *q = &m->xyz[3 * m->origin[to]];
+            double sum = 0.0;
+            for (int k = 0; k < 3; k++) {
+                const double d = T[4 * k] * p[0] + T[4 * k + 1] * p[1] + T[4 * k + 2] * p[2] + T[4 * k + 3] - q[k];
+                sum += d * d;
+            }
+            misfit = fmax(misfit, fabs(a - b) / fmax(fmax(a, b), 1e-6 * extent));
+            deviation = fmax(deviation, sqrt(sum) / extent);
+        }
+    }
+    if (extent > 0.0) {
+        assert_true(test_near(map->deviation, deviation, 1e-14));
+        assert_true(map->misfit >= misfit - 1e-13 && map->misfit <= fmax(misfit + 1e-13, 1e-9));
+    }
+}
+
 /* Corners to corners, next to next (or prev), twins to twins, one to one; order as said. Without pairs. */
 static inline void check_map(const sl_mesh *m, const sl_symmetry *s, const sl_symmetry_map *map)
 {
@@ -44,6 +93,7 @@ static inline void check_map(const sl_mesh *m, const sl_symmetry *s, const sl_sy
         }
     }
     assert_int_equal(corners, map->corners);
+    check_geometry(m, s, map);
     for (int32_t k = 1; k <= map->order && map->from == map->to; k++) {
         bool identity = true;
         for (int32_t h = 0; h < m->nh; h++) {

@@ -63,6 +63,27 @@ static void random_meshes_have_as_many_automorphisms_as_brute_force_finds(void *
     }
 }
 
+/* A strip with a triangle at one end is not its own image, wherever the walk begins. */
+static void strips_with_unlike_ends_are_not_turned_round(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x57);
+    for (int n = 2; n < 16; n++) {
+        model m = model_new();
+        for (int i = 0; i <= n; i++) {
+            model_vertex(&m, i, 0, 0.1 * i * i);
+            model_vertex(&m, i, 1.3, 0.1 * i * i);
+            if (i > 0) {
+                model_quad(&m, 2 * i - 2, 2 * i, 2 * i + 1, 2 * i - 1);
+            }
+        }
+        model_triangle(&m, 2 * n, model_vertex(&m, n + 1, 0.6, 0.1 * n * n), 2 * n + 1);
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        compare_with_brute_force(&m);
+        model_free(&m);
+    }
+}
+
 /* Number of symmetries with the identity. */
 static void expect_order(const model *m, int32_t order, int32_t mirrors)
 {
@@ -163,11 +184,44 @@ static void exact_maps_of_a_torus_come_before_the_others(void **state)
     }
 }
 
-/* A disc of 120 sectors whose rim alone is six-fold: around the middle every turn looks exact. */
+/* Three mirrors at right angles and the smallest turn: of four maps that is what a torus shows. */
+static void four_maps_of_a_torus_generate_the_others(void **state)
+{
+    (void)state;
+    static const int32_t size[3][2] = {{8, 6}, {40, 26}, {60, 33}};
+    for (int i = 0; i < 3; i++) {
+        test_rng rng = test_rng_seed(4);
+        model m = model_new();
+        model_torus(&m, size[i][0], size[i][1]);
+        model_relabel(&m, &rng, 1, NULL, NULL);
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, 4);
+        bool axis[3] = {false, false, false};
+        assert_int_equal(s->nmap, 4);
+        assert_true(s->truncated);
+        for (int32_t k = 0; k < 3; k++) { /* the coordinate planes before others */
+            const double *T = s->map[k].isometry;
+            assert_true(test_near(fabs(T[0]) + fabs(T[5]) + fabs(T[10]), 3.0, 1e-9));
+            for (int a = 0; a < 3; a++) {
+                axis[a] = axis[a] || T[5 * a] < 0.0;
+            }
+        }
+        assert_true(axis[0] && axis[1] && axis[2]);
+        assert_false(s->map[3].reverses);
+        assert_int_equal(s->map[3].order, size[i][0]);
+        const double *T = s->map[3].isometry;
+        assert_true(test_near(T[0] + T[5] + T[10], 1.0 + 2.0 * cos(2 * TEST_PI / size[i][0]), 1e-9));
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
+/* A disc of 240 sectors whose rim alone is six-fold: around the middle every turn looks exact. */
 static void a_round_middle_does_not_hide_a_six_fold_rim(void **state)
 {
     (void)state;
-    enum { SECTORS = 120, RINGS = 40 };
+    enum { SECTORS = 240, RINGS = 50 };
     model m = model_new();
     model_vertex(&m, 0, 0, 0.5);
     for (int ring = 1; ring <= RINGS; ring++) {
@@ -377,6 +431,65 @@ static void coordinates_of_six_digits_are_exact(void **state)
     }
 }
 
+/* In a plane a turn over does as well as a mirror: the isometry reflects where the map does. */
+static void isometries_of_flat_sheets_reflect_where_their_maps_do(void **state)
+{
+    (void)state;
+    model m = model_new();
+    for (int i = 0; i < 5; i++) {
+        for (int j = 0; j < 4; j++) {
+            model_vertex(&m, i - 2.0, 0.3 * i + j * (1.0 + 0.1 * j), 0.7);
+            m.xyz[3 * m.nv - 2] -= 0.3 * i;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 3; j++) {
+            model_quad(&m, 4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j);
+        }
+    }
+    sl_mesh *mesh = model_build(&m);
+    sl_symmetry *s = find_all(mesh, NULL, 64);
+    assert_int_equal(s->nmap, 3);
+    assert_int_equal(s->map[0].kind, SL_SYMMETRY_EXACT);
+    for (int32_t i = 0; i < s->nmap; i++) {
+        const double *T = s->map[i].isometry;
+        const double det = T[0] * (T[5] * T[10] - T[6] * T[9]) - T[1] * (T[4] * T[10] - T[6] * T[8]) +
+                           T[2] * (T[4] * T[9] - T[5] * T[8]);
+        assert_true(test_near(det, s->map[i].reverses ? -1.0 : 1.0, 1e-12));
+    }
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+    model_free(&m);
+}
+
+/* One vertex near another moves by less than def.exact, and its shortest edge changes by a tenth. */
+static void short_edges_of_unlike_lengths_are_not_exact(void **state)
+{
+    (void)state;
+    for (int apart = 0; apart < 2; apart++) {
+        const double e = 1e-5;
+        model m = model_new();
+        const int32_t a = model_vertex(&m, 0, 0, 0), b = model_vertex(&m, 0, 2, 0.1), c = model_vertex(&m, 1, 0, 0.3);
+        const int32_t d = model_vertex(&m, -1, 0, 0.3), f = model_vertex(&m, 1, e, 0.3);
+        const int32_t g = model_vertex(&m, -1, e * (1.0 + 0.1 * apart), 0.3);
+        model_face(&m, 4, (const int32_t[4]){a, c, f, b});
+        model_face(&m, 4, (const int32_t[4]){a, b, g, d});
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, NULL, 64);
+        int32_t exact = 0, near = 0;
+        for (int32_t i = 0; i < s->nmap; i++) {
+            check_map(mesh, s, &s->map[i]);
+            exact += s->map[i].kind == SL_SYMMETRY_EXACT;
+            near += s->map[i].kind == SL_SYMMETRY_NEAR && s->map[i].deviation < 1e-6;
+        }
+        assert_int_equal(exact, 1 - apart);
+        assert_int_equal(near, apart);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
 /* A sheet bent along a line keeps its edge lengths and is no longer symmetric. */
 static void equal_edge_lengths_do_not_make_a_bent_sheet_symmetric(void **state)
 {
@@ -412,14 +525,18 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(regular_meshes_have_as_many_automorphisms_as_brute_force_finds),
         cmocka_unit_test(random_meshes_have_as_many_automorphisms_as_brute_force_finds),
+        cmocka_unit_test(strips_with_unlike_ends_are_not_turned_round),
         cmocka_unit_test(groups_of_solids_have_their_orders_and_mirrors),
         cmocka_unit_test(exact_maps_of_a_torus_come_before_the_others),
+        cmocka_unit_test(four_maps_of_a_torus_generate_the_others),
         cmocka_unit_test(a_round_middle_does_not_hide_a_six_fold_rim),
         cmocka_unit_test(planted_mirrors_are_found_and_nothing_else),
         cmocka_unit_test(sheets_without_symmetry_have_none),
         cmocka_unit_test(one_edge_more_ends_a_symmetry),
         cmocka_unit_test(a_perturbed_symmetry_is_near_then_topological),
         cmocka_unit_test(coordinates_of_six_digits_are_exact),
+        cmocka_unit_test(isometries_of_flat_sheets_reflect_where_their_maps_do),
+        cmocka_unit_test(short_edges_of_unlike_lengths_are_not_exact),
         cmocka_unit_test(equal_edge_lengths_do_not_make_a_bent_sheet_symmetric),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

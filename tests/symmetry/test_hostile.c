@@ -204,6 +204,8 @@ static void odd_meshes_are_searched_like_others(void **state)
         if (which == 7) {
             mesh->twin[1] = 3;
             mesh->twin[3] = 1;
+            mesh->origin[1] = mesh->origin[0];
+            mesh->origin[2] = mesh->origin[3];
         }
         sl_symmetry *s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
         assert_true(s->nmap >= least && s->nmap <= SL_SYMMETRY_MOST * s->components);

@@ -235,6 +235,50 @@ static void exact_mirrors_are_found_to_the_last_digits(void **state)
     }
 }
 
+/* A strip more on one side moves the centre of the area, not the plane. */
+static void what_one_side_has_alone_does_not_move_the_plane(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3e8);
+    for (int trial = 0; trial < 4 * test_multiplier(); trial++) {
+        enum { N = 9, K = 10 };
+        int32_t mirror[1000];
+        double T[12];
+        model m = model_new();
+        model_planted(&m, &rng, N, K, false, true, mirror);
+        int32_t column[K + 1], count = 0;
+        for (int32_t v = 0; v < m.nv; v++) { /* the rim at x = N + 1/2 */
+            if (m.xyz[3 * v] > N + 0.2) {
+                column[count++] = v;
+            }
+        }
+        assert_int_equal(count, K + 1);
+        const int32_t first = m.nv;
+        for (int j = 0; j <= K; j++) {
+            const double *p = &m.xyz[3 * column[j]];
+            model_vertex(&m, p[0] + 0.8, p[1], p[2]);
+        }
+        for (int j = 0; j < K; j++) {
+            model_quad(&m, column[j], first + j, first + j + 1, column[j + 1]);
+        }
+        model_random_isometry(&rng, false, T);
+        model_move(&m, T);
+        sl_mesh *mesh = model_build(&m);
+        sl_near_mirror near = {0};
+        const sl_symmetry_def def = sl_symmetry_default();
+        assert_int_equal(sl_symmetry_near(mesh, &def, NULL, NULL, &near), SL_OK);
+        assert_true(near.found && near.matched < 1.0);
+        for (int32_t v = 0; v < first; v++) {
+            if (mirror[v] == v) {
+                const double *p = &mesh->xyz[3 * v], *n = near.normal;
+                assert_true(test_near(n[0] * p[0] + n[1] * p[1] + n[2] * p[2], near.offset, 1e-9));
+            }
+        }
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
 static void perturbed_mirrors_are_found_with_their_misfit(void **state)
 {
     (void)state;
@@ -331,6 +375,7 @@ int main(void)
         cmocka_unit_test(eigenvectors_of_three_by_three_are_orthonormal_and_right),
         cmocka_unit_test(no_point_is_nearer_than_the_nearest),
         cmocka_unit_test(exact_mirrors_are_found_to_the_last_digits),
+        cmocka_unit_test(what_one_side_has_alone_does_not_move_the_plane),
         cmocka_unit_test(perturbed_mirrors_are_found_with_their_misfit),
         cmocka_unit_test(a_sheet_unlike_its_mirror_images_has_no_near_mirror),
         cmocka_unit_test(near_mirrors_do_not_depend_on_the_number_of_workers),

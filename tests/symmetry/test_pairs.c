@@ -175,28 +175,33 @@ static void groups_of_paired_boxes_are_those_of_boxes(void **state)
     model_free(&quads);
 }
 
-/* A quad is no pair: a strip of one on the left, the other on the right. */
+/* A quad is no pair: strips with a pair at one end and quads elsewhere. */
 static void pairs_do_not_go_to_quads(void **state)
 {
     (void)state;
-    model m = model_new();
-    for (int i = -2; i <= 2; i++) {
-        model_vertex(&m, i, 0, 0.1 * i * i);
-        model_vertex(&m, i, 1.5, 0.1 * i * i);
+    for (int n = 2; n < 14; n++) {
+        int32_t partner[20];
+        model m = model_new();
+        for (int i = 0; i <= n; i++) {
+            model_vertex(&m, i, 0, 0.1 * i * (n - i));
+            model_vertex(&m, i, 1.5, 0.1 * i * (n - i));
+        }
+        model_triangle(&m, 0, 2, 3);
+        model_triangle(&m, 0, 3, 1);
+        for (int i = 1; i < n; i++) {
+            model_quad(&m, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+        }
+        for (int f = 0; f < n + 1; f++) {
+            partner[f] = f < 2 ? 1 - f : f % 3 == 0 ? -1 : f % 3 == 1 ? f : 99;
+        }
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, partner, 64);
+        assert_int_equal(s->nmap, 1); /* across, not along */
+        assert_int_equal(s->map[0].fixed_facets, n + 1);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
     }
-    model_triangle(&m, 0, 2, 3);
-    model_triangle(&m, 0, 3, 1);
-    model_quad(&m, 2, 4, 5, 3);
-    model_quad(&m, 4, 6, 7, 5);
-    model_quad(&m, 6, 8, 9, 7);
-    sl_mesh *mesh = model_build(&m);
-    const int32_t partner[5] = {1, 0, -1, 3, 9};
-    sl_symmetry *s = find_all(mesh, partner, 64);
-    assert_int_equal(s->nmap, 1); /* across, not along */
-    assert_int_equal(s->map[0].fixed_facets, 5);
-    sl_symmetry_free(s);
-    sl_mesh_free(mesh);
-    model_free(&m);
 }
 
 int main(void)
