@@ -12,8 +12,8 @@ typedef enum sl_constraint_kind {
                                border or both */
     SL_CONSTRAINT_BORDER,   /* the border from vertex[0] to vertex[1] is straight, walked with the chart on its left */
     SL_CONSTRAINT_POLYGON,  /* the border is a polygon with corners at the border vertices vertex[], count >= 3, in
-                               border  order, either way; each corner's angle is `angle`, 0 = (count - 2) pi / count: four
-                               corners  make a rectangle */
+                               border  order, either way; each corner's angle is `angle`, 0 = (count - 2) pi / count:
+                               four  corners  make a rectangle */
     SL_CONSTRAINT_RIGHT /* lines (and the border) meet at right angles at vertex[0]. At a border vertex without lines
                            its angle is pi/2: seams that cross between charts */
 } sl_constraint_kind;
@@ -36,6 +36,7 @@ typedef struct sl_constraint {
  * several did), -1 for the plain turn of an interior vertex; table.vertex[s] its vertex.
  *
  * @param[in]  list count constraints; none gives the table of sl_sectors_interior
+ * @param[in]  name nv: what messages call a patch vertex; nullable = its number in the patch
  * @param[out] out  owned by the caller (sl_sectors_clear); empty on failure
  * @param[out] diag names the constraint and the vertices; element = a patch vertex; nullable
  *
@@ -45,11 +46,12 @@ typedef struct sl_constraint {
  * SL_OUT_OF_MEMORY. O(corners + vertices listed).
  * Source: What you seam is what you get, Sec. 4.2, Eqs. 5 and 6. */
 SL_NODISCARD sl_status sl_constraints_compile(const sl_patch *patch, int32_t count, const sl_constraint *list,
-                                              sl_sector_table *out, sl_diag *diag);
+                                              const int32_t *name, sl_sector_table *out, sl_diag *diag);
 
 /* How well a layout does what one constraint asks. */
 typedef struct sl_constraint_measure {
-    double angle; /* ANGLE, RIGHT, POLYGON: largest |planar angle - prescribed| over its sectors [rad]; else 0 */
+    double angle; /* largest |planar angle - prescribed| over the sectors it made and, of ANGLE and RIGHT, over those
+                     at its vertex [rad] */
     double line;  /* STRAIGHT, BORDER, POLYGON: largest distance of a vertex of a line from the chord between the line's
                      ends, over the diagonal of the chart's box; else 0 */
 } sl_constraint_measure;

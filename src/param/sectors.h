@@ -36,10 +36,12 @@ SL_NODISCARD sl_status sl_sectors_check(const sl_patch *patch, const sl_sectors 
  * or nothing can satisfy them; where some corners are free, these must hold what is left, each in (0, pi). A sector of
  * k triangles holds less than k pi. For tables where no corner is in two sectors.
  *
+ * @param[in]  name nv: what messages call a patch vertex; nullable = its number in the patch
  * @param[out] diag the region's or sector's vertices, the sums, the constraints; element = a patch vertex; nullable
  *
  * SL_INFEASIBLE, SL_OUT_OF_MEMORY. O(corners). */
-SL_NODISCARD sl_status sl_sectors_feasible(const sl_patch *patch, const sl_sector_table *table, sl_diag *diag);
+SL_NODISCARD sl_status sl_sectors_feasible(const sl_patch *patch, const sl_sector_table *table, const int32_t *name,
+                                           sl_diag *diag);
 
 /* The next corner counter-clockwise around c's vertex, -1 where the border ends the fan. */
 static inline int32_t sl_corner_rotate(const sl_patch *patch, int32_t c)
