@@ -1,25 +1,19 @@
 /* The mirror plane that carries a surface best onto itself, whatever its connectivity. */
-#include "symmetry/nearest.h"
+#include "symmetry/near_internal.h"
 #include "symmetry/rigid.h"
-#include "symmetry/symmetry.h"
 
 #include "base/memory.h"
-#include "geom/vec3.h"
-#include "mesh/triangulate.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    SAMPLES = 2048, /* of the final fit, at most */
     PER_CORNER = 4, /* of a small mesh */
     COARSE = 256,
     MIDDLE = 512,
     COARSE_ROUNDS = 10, /* for each plane; */
     MIDDLE_ROUNDS = 20, /* for the FINALISTS; */
-    ROUNDS = 20,        /* for the one chosen, */
-    NEWTON_ROUNDS = 30, /* and along the surface's normals, */
-    PATIENCE = 4,       /* this many without gain at most */
+    ROUNDS = 20,        /* for the one chosen */
     PLANES = 16,
     FINALISTS = 3,
     CHUNK = 1024
@@ -28,38 +22,9 @@ enum {
 static const double KEPT = 0.8, KEPT_LAST = 0.5; /* share of the samples a plane is fitted to: the nearest */
 static const double ALIKE = 0.9;         /* ratio of moments from which two axes have no direction of their own */
 static const double SAME_PLANE = 0.9999; /* cosine of normals */
-static const double SETTLED = 1e-13;     /* change of a normal that ends the fit */
-static const double SLIDES = 1e-9;       /* eigenvalue of the normal equations, over the largest */
 static const double ENOUGH = 0.9;        /* share of the area that has to match */
 
-typedef struct plane {
-    double normal[3], offset, score;
-} plane;
-
-typedef struct mirror_search {
-    const sl_mesh *mesh;
-    const sl_context *context;
-    sl_triangulation *triangulation;
-    int32_t *vertex, *facet; /* of the triangles: 3 nt; nt */
-    sl_nearest *tree;
-    double *area;              /* nf */
-    double total, centre[3];   /* of the area */
-    double axis[9], moment[3]; /* principal axes, ascending moments */
-    double *sample, *image;    /* 3 SAMPLES: corners; nearest to their mirror images */
-    int32_t *triangle;         /* SAMPLES: nearest triangle */
-    double *distance, *sorted; /* SAMPLES */
-    int32_t samples;
-} mirror_search;
-
-static void mirror_point(const plane *s, const double p[3], double out[3])
-{
-    const double d = 2.0 * (sl_vec3_dot(s->normal, p) - s->offset);
-    for (int k = 0; k < 3; k++) {
-        out[k] = p[k] - d * s->normal[k];
-    }
-}
-
-static sl_status make_tree(mirror_search *s)
+static sl_status make_tree(sl_mirror_search *s)
 {
     sl_status status = sl_triangulation_create(s->mesh, &s->triangulation);
     if (status != SL_OK) {
@@ -69,11 +34,11 @@ static sl_status make_tree(mirror_search *s)
     s->vertex = sl_alloc(3 * (int64_t)nt, sizeof *s->vertex);
     s->facet = sl_alloc(nt, sizeof *s->facet);
     s->area = sl_alloc(s->mesh->nf, sizeof *s->area);
-    s->sample = sl_alloc(3 * SAMPLES, sizeof *s->sample);
-    s->image = sl_alloc(3 * SAMPLES, sizeof *s->image);
-    s->triangle = sl_alloc(SAMPLES, sizeof *s->triangle);
-    s->distance = sl_alloc(SAMPLES, sizeof *s->distance);
-    s->sorted = sl_alloc(SAMPLES, sizeof *s->sorted);
+    s->sample = sl_alloc(3 * SL_MIRROR_SAMPLES, sizeof *s->sample);
+    s->image = sl_alloc(3 * SL_MIRROR_SAMPLES, sizeof *s->image);
+    s->triangle = sl_alloc(SL_MIRROR_SAMPLES, sizeof *s->triangle);
+    s->distance = sl_alloc(SL_MIRROR_SAMPLES, sizeof *s->distance);
+    s->sorted = sl_alloc(SL_MIRROR_SAMPLES, sizeof *s->sorted);
     if (s->vertex == NULL || s->facet == NULL || s->area == NULL || s->sample == NULL || s->image == NULL ||
         s->triangle == NULL || s->distance == NULL || s->sorted == NULL) {
         return SL_OUT_OF_MEMORY;
@@ -88,7 +53,7 @@ static sl_status make_tree(mirror_search *s)
 }
 
 /* Centre and principal axes of the area, facets as points. */
-static void find_axes(mirror_search *s)
+static void find_axes(sl_mirror_search *s)
 {
     double c[3], moment[9] = {0};
     for (int32_t f = 0; f < s->mesh->nf; f++) {
@@ -114,10 +79,10 @@ static void find_axes(mirror_search *s)
 
 /* Corners of facets at equal steps of area, of a large facet one after the other: where a polygon is not plane, its
  * mirror image may be cut into other triangles, but the corners lie on both. */
-static void take_samples(mirror_search *s)
+static void take_samples(sl_mirror_search *s)
 {
     const sl_mesh *m = s->mesh;
-    const int32_t wanted = m->nh < SAMPLES / PER_CORNER ? PER_CORNER * m->nh : SAMPLES;
+    const int32_t wanted = m->nh < SL_MIRROR_SAMPLES / PER_CORNER ? PER_CORNER * m->nh : SL_MIRROR_SAMPLES;
     double passed = 0.0;
     for (int32_t f = 0; f < m->nf; f++) {
         passed += s->area[f] / s->total;
@@ -128,9 +93,9 @@ static void take_samples(mirror_search *s)
     }
 }
 
-static int32_t add_plane(const mirror_search *s, plane *list, int32_t count, const double normal[3])
+static int32_t add_plane(const sl_mirror_search *s, sl_mirror_plane *list, int32_t count, const double normal[3])
 {
-    plane p = {.score = HUGE_VAL};
+    sl_mirror_plane p = {.score = HUGE_VAL};
     const double norm = sl_vec3_norm(normal);
     for (int k = 0; k < 3; k++) {
         p.normal[k] = normal[k] / norm;
@@ -146,7 +111,7 @@ static int32_t add_plane(const mirror_search *s, plane *list, int32_t count, con
 }
 
 /* Coordinate axes, principal axes, and what lies between those of like moments. */
-static int32_t list_planes(const mirror_search *s, plane *list)
+static int32_t list_planes(const sl_mirror_search *s, sl_mirror_plane *list)
 {
     int32_t count = 0;
     for (int k = 0; k < 3; k++) {
@@ -170,202 +135,32 @@ static int32_t list_planes(const mirror_search *s, plane *list)
     return count;
 }
 
-typedef struct matching {
-    mirror_search *s;
-    const plane *p;
-    int32_t stride;
-} matching;
-
-static void match_samples(void *user, int64_t begin, int64_t end, int32_t chunk)
-{
-    (void)chunk;
-    const matching *m = user;
-    for (int64_t i = begin; i < end; i++) {
-        double q[3];
-        mirror_point(m->p, &m->s->sample[3 * i * m->stride], q);
-        m->s->triangle[i] = sl_nearest_find(m->s->tree, q, &m->s->image[3 * i], &m->s->distance[i]);
-    }
-}
-
-static int compare_double(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Matches samples to the surface; returns the distance within which the share `kept` of them lies. p->score = mean
- * distance of those. */
-static double match(mirror_search *s, plane *p, int32_t count, int32_t stride, double kept)
-{
-    matching m = {s, p, stride};
-    sl_parallel_for(s->context, count, CHUNK / 8, match_samples, &m);
-    memcpy(s->sorted, s->distance, (size_t)count * sizeof *s->sorted);
-    qsort(s->sorted, (size_t)count, sizeof *s->sorted, compare_double);
-    const int32_t keep = (int32_t)(kept * (count - 1)) + 1;
-    p->score = 0.0;
-    for (int32_t i = 0; i < keep; i++) {
-        p->score += s->sorted[i] / keep;
-    }
-    return s->sorted[keep - 1];
-}
-
-/* The plane of least squares between samples and the points nearest to their mirror images: with m the mean of both,
- * sum |q - S p|^2 = const + 4 n' (sum (p - m)(q - m)') n. Fitted to the share `kept` that lies nearest. Returns the
- * change of the normal and the offset. */
-static double refit(mirror_search *s, plane *p, int32_t count, int32_t stride, double kept)
-{
-    const double limit = match(s, p, count, stride, kept);
-    double mean[3] = {0}, product[9] = {0}, lambda[3], V[9], n = 0.0;
-    for (int32_t i = 0; i < count; i++) {
-        if (s->distance[i] <= limit) {
-            n += 1.0;
-            for (int k = 0; k < 3; k++) {
-                mean[k] += 0.5 * (s->sample[3 * i * stride + k] + s->image[3 * i + k]);
-            }
-        }
-    }
-    for (int32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 9 && s->distance[i] <= limit; k++) {
-            const double *a = &s->sample[3 * i * stride], *b = &s->image[3 * i];
-            const int r = k / 3, c = k % 3;
-            product[k] +=
-                0.5 * ((a[r] - mean[r] / n) * (b[c] - mean[c] / n) + (b[r] - mean[r] / n) * (a[c] - mean[c] / n));
-        }
-    }
-    sl_eigen3(product, lambda, V);
-    const double sign = sl_vec3_dot(V, p->normal) < 0.0 ? -1.0 : 1.0;
-    double change = 0.0;
-    for (int k = 0; k < 3; k++) {
-        change = fmax(change, fabs(sign * V[k] - p->normal[k]));
-        p->normal[k] = sign * V[k];
-    }
-    const double offset = sl_vec3_dot(p->normal, mean) / n;
-    change = fmax(change, fabs(offset - p->offset));
-    p->offset = offset;
-    return change;
-}
-
 static int compare_planes(const void *a, const void *b)
 {
-    return compare_double(&((const plane *)a)->score, &((const plane *)b)->score);
-}
-
-static void fit_plane(mirror_search *s, plane *p, int32_t samples, int32_t rounds, double kept)
-{
-    const int32_t stride = s->samples > samples ? s->samples / samples : 1, count = (s->samples - 1) / stride + 1;
-    double change = HUGE_VAL;
-    for (int32_t round = 0; round < rounds && change > SETTLED; round++) {
-        change = refit(s, p, count, stride, kept);
-    }
-}
-
-/* Unit normal of the triangle that sample i was matched to; 0 for none. */
-static void surface_normal(const mirror_search *s, int32_t i, double normal[3])
-{
-    const int32_t *v = &s->vertex[3 * (int64_t)s->triangle[i]];
-    const double *a = &s->mesh->xyz[3 * (int64_t)v[0]];
-    double e[3], f[3];
-    sl_vec3_sub(&s->mesh->xyz[3 * (int64_t)v[1]], a, e);
-    sl_vec3_sub(&s->mesh->xyz[3 * (int64_t)v[2]], a, f);
-    sl_vec3_cross(e, f, normal);
-    const double norm = sl_vec3_norm(normal);
-    for (int k = 0; k < 3; k++) {
-        normal[k] = norm > 0.0 ? normal[k] / norm : 0.0;
-    }
-}
-
-/* Normal equations of the distances along the surface's normals nu, r = nu . (q - S p), in the turns x0, x1 of the
- * mirror's normal n towards e and f and the change x2 of its offset d:
- *     dr = 2 ((x0 e + x1 f) . p - x2) (nu . n) + 2 (n . p - d) nu . (x0 e + x1 f). */
-static void assemble(const mirror_search *s, const plane *p, double limit, const double frame[9], double N[9],
-                     double g[3])
-{
-    memset(N, 0, 9 * sizeof *N);
-    memset(g, 0, 3 * sizeof *g);
-    for (int32_t i = 0; i < s->samples; i++) {
-        const double *x = &s->sample[3 * i];
-        double nu[3], gap[3], J[3];
-        if (s->distance[i] > limit) {
-            continue;
-        }
-        surface_normal(s, i, nu);
-        mirror_point(p, x, gap);
-        sl_vec3_sub(&s->image[3 * i], gap, gap);
-        const double r = sl_vec3_dot(nu, gap), along = sl_vec3_dot(nu, p->normal);
-        const double height = sl_vec3_dot(p->normal, x) - p->offset;
-        for (int k = 0; k < 2; k++) {
-            J[k] = 2.0 * (sl_vec3_dot(&frame[3 * k], x) * along + height * sl_vec3_dot(nu, &frame[3 * k]));
-        }
-        J[2] = -2.0 * along;
-        for (int k = 0; k < 9; k++) {
-            N[k] += J[k / 3] * J[k % 3];
-        }
-        for (int k = 0; k < 3; k++) {
-            g[k] += J[k] * r;
-        }
-    }
-}
-
-/* One Gauss-Newton step; directions in which the surface slides along itself are left alone. */
-static void newton_step(const mirror_search *s, plane *p, double limit)
-{
-    double frame[9], product[9], unused[3], N[9], g[3], lambda[3], V[9], x[3] = {0};
-    for (int k = 0; k < 9; k++) { /* the eigenvectors of I + n n' are a frame, n the last */
-        product[k] = (k % 4 == 0) + p->normal[k / 3] * p->normal[k % 3];
-    }
-    sl_eigen3(product, unused, frame);
-    assemble(s, p, limit, frame, N, g);
-    sl_eigen3(N, lambda, V);
-    for (int k = 0; k < 3; k++) {
-        const double c = lambda[k] > SLIDES * lambda[2] ? -sl_vec3_dot(&V[3 * k], g) / lambda[k] : 0.0;
-        for (int i = 0; i < 3; i++) {
-            x[i] += c * V[3 * k + i];
-        }
-    }
-    for (int i = 0; i < 3; i++) {
-        p->normal[i] += x[0] * frame[i] + x[1] * frame[3 + i];
-    }
-    const double norm = sl_vec3_norm(p->normal);
-    for (int i = 0; i < 3; i++) {
-        p->normal[i] /= norm;
-    }
-    p->offset = (p->offset + x[2]) / norm;
-}
-
-/* Distances along the normals converge where nearest points creep along the surface. The best plane met is kept. */
-static void polish_plane(mirror_search *s, plane *best)
-{
-    plane p = *best;
-    int32_t worse = 0;
-    best->score = HUGE_VAL;
-    for (int32_t round = 0; round < NEWTON_ROUNDS && worse < PATIENCE; round++) {
-        const double limit = match(s, &p, s->samples, 1, KEPT_LAST);
-        worse = p.score < best->score ? 0 : worse + 1;
-        *best = p.score < best->score ? p : *best;
-        newton_step(s, &p, limit);
-    }
+    const double x = ((const sl_mirror_plane *)a)->score, y = ((const sl_mirror_plane *)b)->score;
+    return (x > y) - (x < y);
 }
 
 /* All planes roughly, the best ones better, the best one finely: at last to the half that fits best, so that what the
  * two sides do not share does not move it. */
-static sl_status find_plane(mirror_search *s, plane *best)
+static sl_status find_plane(sl_mirror_search *s, sl_mirror_plane *best)
 {
     sl_status status = SL_OK;
-    plane list[PLANES];
+    sl_mirror_plane list[PLANES];
     const int32_t count = list_planes(s, list), finalists = count < FINALISTS ? count : FINALISTS;
     for (int32_t i = 0; i < count; i++) {
         SL_TRY(sl_report_progress(s->context, "near symmetry", 0.5 * i / count));
-        fit_plane(s, &list[i], COARSE, COARSE_ROUNDS, KEPT);
+        sl_mirror_fit(s, &list[i], COARSE, COARSE_ROUNDS, KEPT);
     }
     qsort(list, (size_t)count, sizeof *list, compare_planes);
     for (int32_t i = 0; i < finalists; i++) {
         SL_TRY(sl_report_progress(s->context, "near symmetry", 0.5 + 0.1 * i));
-        fit_plane(s, &list[i], MIDDLE, MIDDLE_ROUNDS, KEPT);
+        sl_mirror_fit(s, &list[i], MIDDLE, MIDDLE_ROUNDS, KEPT);
     }
     qsort(list, (size_t)finalists, sizeof *list, compare_planes);
     *best = list[0];
-    fit_plane(s, best, SAMPLES, ROUNDS, KEPT_LAST);
-    polish_plane(s, best);
+    sl_mirror_fit(s, best, SL_MIRROR_SAMPLES, ROUNDS, KEPT_LAST);
+    sl_mirror_polish(s, best, KEPT_LAST);
 cleanup:
     return status;
 }
@@ -376,8 +171,8 @@ typedef struct chunk_sums {
 } chunk_sums;
 
 typedef struct judgement {
-    const mirror_search *s;
-    const plane *p;
+    const sl_mirror_search *s;
+    const sl_mirror_plane *p;
     double near;         /* absolute */
     const uint8_t *used; /* nv */
     chunk_sums *sums;
@@ -392,7 +187,7 @@ static void judge_vertices(void *user, int64_t begin, int64_t end, int32_t chunk
     for (int64_t v = begin; v < end; v++) {
         if (j->used[v]) {
             double q[3], at[3], d;
-            mirror_point(j->p, &j->s->mesh->xyz[3 * v], q);
+            sl_mirror_point(j->p, &j->s->mesh->xyz[3 * v], q);
             sl_nearest_find(j->s->tree, q, at, &d);
             sums.n += 1.0;
             sums.sum += d;
@@ -410,7 +205,7 @@ static void judge_facets(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t f = begin; f < end; f++) {
         double c[3], q[3], at[3], d;
         sl_mesh_face_centroid(j->s->mesh, (int32_t)f, c);
-        mirror_point(j->p, c, q);
+        sl_mirror_point(j->p, c, q);
         const int32_t t = sl_nearest_find(j->s->tree, q, at, &d);
         within += d <= j->near ? j->s->area[f] : 0.0;
         if (j->match != NULL) {
@@ -420,7 +215,8 @@ static void judge_facets(void *user, int64_t begin, int64_t end, int32_t chunk)
     j->area_matched[chunk] = within;
 }
 
-static sl_status judge(const mirror_search *s, const plane *p, double near, int32_t *match, sl_near_mirror *out)
+static sl_status judge(const sl_mirror_search *s, const sl_mirror_plane *p, double near, int32_t *match,
+                       sl_near_mirror *out)
 {
     sl_status status = SL_OK;
     const sl_mesh *m = s->mesh;
@@ -469,7 +265,7 @@ sl_status sl_symmetry_near(const sl_mesh *mesh, const sl_symmetry_def *def, cons
                            sl_near_mirror *out)
 {
     sl_status status = SL_OK;
-    mirror_search s = {.mesh = mesh, .context = context};
+    sl_mirror_search s = {.mesh = mesh, .context = context};
     sl_near_mirror result = {0};
     for (int32_t f = 0; f < mesh->nf && match != NULL; f++) {
         match[f] = -1;
@@ -481,7 +277,7 @@ sl_status sl_symmetry_near(const sl_mesh *mesh, const sl_symmetry_def *def, cons
     SL_TRY(make_tree(&s));
     find_axes(&s);
     if (s.total > 0.0) {
-        plane best;
+        sl_mirror_plane best;
         take_samples(&s);
         SL_TRY(find_plane(&s, &best));
         SL_TRY(judge(&s, &best, def->near, match, &result));

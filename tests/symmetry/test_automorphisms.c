@@ -217,11 +217,30 @@ static void four_maps_of_a_torus_generate_the_others(void **state)
     }
 }
 
-/* A disc of 240 sectors whose rim alone is six-fold: around the middle every turn looks exact. */
+/* A mirror with a small turn after it is no mirror. */
+static void of_many_maps_mirrors_and_one_turn_are_listed(void **state)
+{
+    (void)state;
+    model m = model_new();
+    model_torus(&m, 100, 9);
+    sl_mesh *mesh = model_build(&m);
+    sl_symmetry *s = find_all(mesh, NULL, SL_SYMMETRY_MOST);
+    assert_int_equal(s->nmap, SL_SYMMETRY_MOST);
+    for (int32_t i = 0; i < s->nmap; i++) {
+        assert_int_equal(s->map[i].kind, SL_SYMMETRY_EXACT);
+        assert_int_equal(s->map[i].reverses && s->map[i].separates, i + 1 < s->nmap);
+    }
+    assert_int_equal(s->map[s->nmap - 1].order, 100);
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+    model_free(&m);
+}
+
+/* A disc of 600 sectors whose rim alone is six-fold: around the middle every turn looks exact. */
 static void a_round_middle_does_not_hide_a_six_fold_rim(void **state)
 {
     (void)state;
-    enum { SECTORS = 240, RINGS = 50 };
+    enum { SECTORS = 600, RINGS = 40 };
     model m = model_new();
     model_vertex(&m, 0, 0, 0.5);
     for (int ring = 1; ring <= RINGS; ring++) {
@@ -529,6 +548,7 @@ int main(void)
         cmocka_unit_test(groups_of_solids_have_their_orders_and_mirrors),
         cmocka_unit_test(exact_maps_of_a_torus_come_before_the_others),
         cmocka_unit_test(four_maps_of_a_torus_generate_the_others),
+        cmocka_unit_test(of_many_maps_mirrors_and_one_turn_are_listed),
         cmocka_unit_test(a_round_middle_does_not_hide_a_six_fold_rim),
         cmocka_unit_test(planted_mirrors_are_found_and_nothing_else),
         cmocka_unit_test(sheets_without_symmetry_have_none),

@@ -204,6 +204,43 @@ static void pairs_do_not_go_to_quads(void **state)
     }
 }
 
+/* A triangle with three arms: a quad, a pair, two quads. */
+static void arms_of_a_pair_and_of_a_quad_are_not_exchanged(void **state)
+{
+    (void)state;
+    for (int paired = 0; paired < 3; paired++) { /* none, one, both of the short arms */
+        int32_t partner[8];
+        model m = model_new();
+        for (int k = 0; k < 3; k++) {
+            model_vertex(&m, cos(2.0 * k * TEST_PI / 3.0), sin(2.0 * k * TEST_PI / 3.0), 0.1 * k);
+        }
+        model_triangle(&m, 0, 1, 2);
+        partner[0] = -1;
+        for (int k = 0; k < 3; k++) {
+            const int32_t a = k, b = (k + 1) % 3, c = model_vertex(&m, k, 5.0, 0), d = model_vertex(&m, k, 6.0, 0.2);
+            if (k < paired) {
+                partner[m.nf] = m.nf + 1;
+                partner[m.nf + 1] = m.nf;
+                model_triangle(&m, b, a, c);
+                model_triangle(&m, b, c, d);
+            } else {
+                partner[m.nf] = -1;
+                model_quad(&m, b, a, c, d);
+            }
+            if (k == 2) {
+                partner[m.nf] = -1;
+                model_quad(&m, d, c, model_vertex(&m, 2, 8, 0), model_vertex(&m, 3, 8, 0));
+            }
+        }
+        sl_mesh *mesh = model_build(&m);
+        sl_symmetry *s = find_all(mesh, partner, 64);
+        assert_int_equal(s->nmap, paired == 1 ? 0 : 1);
+        sl_symmetry_free(s);
+        sl_mesh_free(mesh);
+        model_free(&m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -211,6 +248,7 @@ int main(void)
         cmocka_unit_test(a_pair_on_the_plane_is_cut_where_its_diagonal_lies_there),
         cmocka_unit_test(groups_of_paired_boxes_are_those_of_boxes),
         cmocka_unit_test(pairs_do_not_go_to_quads),
+        cmocka_unit_test(arms_of_a_pair_and_of_a_quad_are_not_exchanged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
