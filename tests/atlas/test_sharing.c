@@ -214,6 +214,18 @@ static void measure_tells_sharing_from_overlap(void **state)
     assert_int_equal(sl_measure_atlas(&b.polygons, uv, 512, NULL, &without, NULL), SL_OK);
     assert_true(without.overlap_inside + without.overlap_across > 0.5 && without.copies == 0 && without.shared == 0.0);
     assert_true(without.fill == with.fill);
+    int32_t own = 0, last = -1, kept = -1;
+    for (int32_t c = 0; c < seg->nchart; c++) { /* a copy said to be of another chart than it is: overlap */
+        last = copy_of[c] >= 0 ? c : last;
+    }
+    while (copy_of[own] >= 0 || own == copy_of[last]) {
+        own++;
+    }
+    kept = copy_of[last];
+    copy_of[last] = own;
+    assert_int_equal(sl_measure_shared(&b.polygons, uv, &table, 512, NULL, &partly, NULL), SL_OK);
+    assert_true(partly.overlap_across > 0.0);
+    copy_of[last] = kept;
     for (int32_t c = seg->nchart - 1; c >= 0; c--) { /* one copy not declared: its texels are overlap */
         if (copy_of[c] >= 0) {
             copy_of[c] = -1;

@@ -302,6 +302,8 @@ static void the_plane_of_a_near_symmetry_is_the_first_cut_and_shares_nothing(voi
         sl_mesh *mesh = NULL;
         double shared = 1.0;
         def.pairing = SL_PAIR_OFF;
+        def.protect_first = false; /* the plane is an axis, and never sewn */
+        def.sew_stretch = 1.5;
         def.symmetry = near == 1 ? SL_SYMMETRY_USE_NEAR : SL_SYMMETRY_USE_AUTO;
         sl_segmentation *s = segment_body(&body, 1, &def, &mesh, &shared);
         assert_true(shared == 0.0);
@@ -328,11 +330,21 @@ static void charts_make_room_for_the_other_diagonals_of_their_copies(void **stat
         const test_mirrored body = {
             .n = 6, .mirrors = 1, .nspike = 3, .height = 2.2, .facets = TEST_QUADS, .seed = test_bits(&rng)};
         const sl_segment_def def = sl_segment_default();
-        sl_mesh *mesh = NULL;
-        double shared = 0.0;
-        sl_segmentation *s = segment_body(&body, 1, &def, &mesh, &shared);
+        sl_mesh *mesh = test_mirrored_mesh(&body, 1);
+        for (int32_t v = 0; v < mesh->nv; v++) { /* far off their places, mirrored */
+            double *p = mesh->xyz + 3 * v;
+            const double at[3] = {fabs(p[0]), p[1], p[2]}, side = p[0] < 0.0 ? -1.0 : p[0] > 0.0 ? 1.0 : 0.0;
+            p[0] += side * 0.3 * at[0] * test_folded_noise(at, body.seed, 3);
+            p[1] += 0.03 * test_folded_noise(at, body.seed, 4);
+            p[2] += 0.03 * test_folded_noise(at, body.seed, 5);
+        }
+        sl_triangulation *t = test_triangulate(mesh);
+        sl_segmentation *s = segment(mesh, t, &def, 2);
+        assert_int_equal(test_check_segmentation(mesh, t, s, def.flatten.max_stretch), 0);
+        (void)test_check_sharing(mesh, s, 1e-5);
         refused += s->sharing.refused;
         copies += s->sharing.copies;
+        sl_triangulation_free(t);
         sl_segmentation_free(s);
         sl_mesh_free(mesh);
     }
@@ -414,14 +426,42 @@ static void halves_are_shared_only_where_lengths_agree(void **state)
     }
 }
 
-/* A claimed copy whose geometry is another is laid flat itself. */
-static void a_copy_that_does_not_fit_its_geometry_is_refused(void **state)
+/* That one triangle equals another says nothing. */
+static void lone_facets_are_no_copies_of_one_another(void **state)
 {
     (void)state;
+    double xyz[27];
+    int32_t first[4], index[9];
+    for (int32_t k = 0; k < 9; k++) {
+        static const double corner[3][2] = {{0.0, 0.0}, {1.0, 0.2}, {0.3, 0.9}};
+        xyz[3 * k] = corner[k % 3][0] + 2.0 * (k / 3);
+        xyz[3 * k + 1] = corner[k % 3][1];
+        xyz[3 * k + 2] = 0.5;
+        index[k] = k;
+        first[k / 3] = 3 * (k / 3);
+    }
+    first[3] = 9;
+    const sl_polygons polygons = {9, 3, xyz, first, index};
+    const sl_segment_def def = sl_segment_default();
+    sl_mesh *mesh = NULL;
+    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, NULL), SL_OK);
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_segmentation *s = segment(mesh, t, &def, 1);
+    assert_int_equal(s->nchart, 3);
+    assert_int_equal(s->sharing.copies, 0);
+    sl_segmentation_free(s);
+    sl_triangulation_free(t);
+    sl_mesh_free(mesh);
+}
+
+/* A claimed copy whose geometry is another is laid flat itself. */
+static void check_refusal(int turned)
+{
     const test_mirrored body = {.n = 4, .mirrors = 1, .nspike = 0, .height = 0.0, .facets = TEST_QUADS, .seed = 11};
     sl_mesh *mesh = test_mirrored_mesh(&body, 2), *work = NULL;
     const int32_t half = mesh->nf / 2, corners = mesh->nh / 2;
-    for (int32_t h = corners; h < mesh->nh; h++) { /* the second body drawn out to a needle, once a vertex */
+    for (int32_t h = corners; turned == 0 && h < mesh->nh;
+         h++) { /* the second body drawn out to a needle, once a vertex */
         double *p = mesh->xyz + 3 * mesh->origin[h];
         p[2] = fabs(p[2]) < 2.0 ? p[2] * 8.0 + (p[2] < 0.0 ? -8.0 : 8.0) : p[2];
     }
@@ -431,7 +471,7 @@ static void a_copy_that_does_not_fit_its_geometry_is_refused(void **state)
     sl_job_list jobs = {0}, done = {0}, refused = {0};
     sl_sharing sharing = {0};
     sl_copy_list copies = {malloc((size_t)corners * sizeof(int32_t)), malloc((size_t)corners * sizeof(int32_t)), 0,
-                           false, SL_SYMMETRY_EXACT};
+                           turned == 1, SL_SYMMETRY_EXACT};
     for (int32_t c = corners; c < mesh->nh; c++) { /* facets correspond by number, corners by vertex */
         int32_t k = mesh->face_first[mesh->face[c] - half];
         while (mesh->origin[k] + mesh->nv / 2 != mesh->origin[c]) {
@@ -484,6 +524,14 @@ static void a_copy_that_does_not_fit_its_geometry_is_refused(void **state)
     sl_mesh_free(mesh);
 }
 
+/* Stretched to a needle; or said to be a mirror image and none: then every triangle is turned over. */
+static void a_copy_that_does_not_fit_its_geometry_is_refused(void **state)
+{
+    (void)state;
+    check_refusal(0);
+    check_refusal(1);
+}
+
 static void the_cap_holds_for_bodies_with_a_mirror(void **state)
 {
     (void)state;
@@ -525,6 +573,7 @@ int main(void)
         cmocka_unit_test(charts_make_room_for_the_other_diagonals_of_their_copies),
         cmocka_unit_test(the_paper_s_test_finds_halves_that_are_isomorphic),
         cmocka_unit_test(halves_are_shared_only_where_lengths_agree),
+        cmocka_unit_test(lone_facets_are_no_copies_of_one_another),
         cmocka_unit_test(a_copy_that_does_not_fit_its_geometry_is_refused),
         cmocka_unit_test(the_cap_holds_for_bodies_with_a_mirror),
     };
