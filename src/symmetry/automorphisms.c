@@ -133,16 +133,26 @@ static void sort_maps(sl_symmetry_map *map, int32_t count)
     }
 }
 
+/* How many maps the component may have: as many as fit into its share of def->corners, by components or by corners. */
+static int32_t most_maps(const sl_symmetry_search *search, int32_t component)
+{
+    const sl_symmetry_def *def = search->def;
+    const int64_t equal = def->corners / search->searched / sl_cells_corners(search->cells, component);
+    const int64_t fair = def->corners / search->searched_corners;
+    int64_t most = equal > fair ? equal : fair;
+    most = most > LEAST ? most : LEAST;
+    return most < def->most ? (int32_t)most : def->most;
+}
+
 sl_status sl_symmetry_automorphisms(sl_symmetry_search *search, int32_t component)
 {
     sl_status status = SL_OK;
     const sl_cells *cells = search->cells;
     const sl_symmetry_def *def = search->def;
-    const int64_t corners = sl_cells_corners(cells, component), fit = def->corners / corners;
+    const int64_t corners = sl_cells_corners(cells, component);
     const int32_t first = search->out->nmap;
     sl_finder f = {.search = search, .component = component};
-    f.cap = fit < def->most ? (int32_t)(fit > LEAST ? fit : LEAST) : def->most;
-    f.cap = f.cap < def->most ? f.cap : def->most;
+    f.cap = most_maps(search, component);
     f.tolerance[SL_SYMMETRY_EXACT] = (2.0 * def->exact + ROUNDING) * cells->size[component];
     f.tolerance[SL_SYMMETRY_NEAR] = (2.0 * def->near + ROUNDING) * cells->size[component];
     f.tolerance[SL_SYMMETRY_TOPOLOGICAL] = INFINITY;

@@ -127,6 +127,12 @@ static sl_status search_components(sl_symmetry_search *search)
     const int32_t copies = s->nmap;
     for (int32_t k = 0; k < s->components; k++) {
         if (s->original[k] == k || search->def->of_copies) {
+            search->searched++;
+            search->searched_corners += sl_cells_corners(search->cells, k);
+        }
+    }
+    for (int32_t k = 0; k < s->components; k++) {
+        if (s->original[k] == k || search->def->of_copies) {
             SL_TRY(sl_report_progress(search->context, "symmetry", 0.5));
             SL_TRY(sl_symmetry_automorphisms(search, k));
         }

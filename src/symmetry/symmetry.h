@@ -69,8 +69,8 @@ typedef struct sl_symmetry_def {
     bool mirrors_only; /* involutions that separate, and copies, only; default false */
     bool of_copies;    /* also the automorphisms of copies: those of the original, moved; default false */
     int32_t most;      /* maps a component; default SL_SYMMETRY_MOST */
-    int64_t corners;   /* in all automorphisms of a component, though four are listed; default 2^23, which leaves 64
-                          to 43,000 triangles and more */
+    int64_t corners;   /* in all automorphisms together, about, though a component may have four; default 2^23: the 64
+                          of one of 43,000 triangles */
 } sl_symmetry_def;
 
 sl_symmetry_def sl_symmetry_default(void);

@@ -109,7 +109,8 @@ typedef struct sl_symmetry_search {
     const sl_cells *cells;
     int32_t *image; /* corners of the largest component */
     sl_symmetry *out;
-    int64_t capacity; /* of out->map */
+    int64_t capacity;                   /* of out->map */
+    int64_t searched, searched_corners; /* components whose automorphisms are sought; their corners */
 } sl_symmetry_search;
 
 /* Walks the whole component and appends the map when all of it fits (worst kind allowed: `kind`). *added says whether

@@ -88,6 +88,34 @@ static void automorphisms_of_copies_are_listed_when_asked_for(void **state)
     model_free(&m);
 }
 
+static void a_budget_of_corners_leaves_four_maps_to_each(void **state)
+{
+    (void)state;
+    model m = model_new();
+    for (int k = 0; k < 3; k++) {
+        const int32_t v = m.nv;
+        model_box(&m, 2, 3, 4 + k);
+        for (int32_t i = v; i < m.nv; i++) {
+            m.xyz[3 * i] += 10.0 * k;
+        }
+    }
+    sl_mesh *mesh = model_build(&m);
+    sl_symmetry_def def = sl_symmetry_default();
+    def.corners = 1;
+    sl_symmetry *s = NULL;
+    assert_int_equal(sl_symmetry_find(mesh, NULL, &def, NULL, &s), SL_OK);
+    assert_int_equal(s->nmap, 12);
+    assert_true(s->truncated);
+    for (int32_t i = 0; i < 12; i++) {
+        assert_int_equal(s->map[i].from, i / 4);
+        assert_true(i % 4 == 3 || s->map[i].separates); /* three mirrors, a half turn */
+    }
+    check_all(mesh, s);
+    sl_symmetry_free(s);
+    sl_mesh_free(mesh);
+    model_free(&m);
+}
+
 /* Octagons in one circle, sides in another order: all distances from the centre and the sum of the sides agree. */
 static void equal_distances_from_the_centre_make_no_copies(void **state)
 {
@@ -192,6 +220,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(copies_moved_turned_and_mirrored_are_found),
         cmocka_unit_test(equal_distances_from_the_centre_make_no_copies),
+        cmocka_unit_test(a_budget_of_corners_leaves_four_maps_to_each),
         cmocka_unit_test(automorphisms_of_copies_are_listed_when_asked_for),
         cmocka_unit_test(thousands_of_small_components_are_sorted_out),
         cmocka_unit_test(thousands_of_single_facets_without_copies_have_none),
