@@ -27,6 +27,7 @@
 #include "overlap/certificate.h"
 #include "overlap/coverage.h"
 #include "pack/pack.h"
+#include "param/abf_chart.h"
 #include "param/constraints.h"
 #include "param/flatten.h"
 #include "param/lscm.h"

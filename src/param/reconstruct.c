@@ -6,14 +6,16 @@
  * So x and y meet at the border only, and the real matrix [R -S; S R] has half the entries of a general one. Solved by
  * Cholesky and refined with residuals taken triangle by triangle: corrected seminormal equations, as accurate as QR.
  * Source: Levy et al. 2002; Bjorck 1987, "Stability analysis of the method of seminormal equations". */
-#include "param/reconstruct_internal.h"
+#include "param/reconstruct.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/predicates.h"
 #include "geom/vec3.h"
 #include "param/abf.h"
+#include "param/reconstruct_internal.h"
 #include "param/reconstruct_system_internal.h"
 #include "sparse/cholesky.h"
 
@@ -113,50 +115,32 @@ static sl_status factor_or_singular(sl_cholesky *factor, const sl_csc *A)
     return status == SL_NOT_POSITIVE_DEFINITE || status == SL_BAD_INPUT ? SL_SINGULAR : status;
 }
 
-static sl_status refine(const sl_layout *layout, const sl_cholesky *factor, double *uv)
+struct sl_reconstruct {
+    sl_layout layout;
+    sl_csc *A;
+    sl_cholesky *factor;
+    double length;      /* between the two pins */
+    double *rhs, *work; /* 2 nfree, and of the solve */
+    double *uv;         /* 2 nv: so that a failure leaves the caller's alone */
+};
+
+static sl_status refine(sl_reconstruct *r)
 {
-    double *rhs = sl_alloc(2 * (int64_t)layout->nfree, sizeof *rhs);
-    double *work = sl_alloc(sl_cholesky_work_size(factor, 1), sizeof *work);
-    sl_status status = rhs == NULL || work == NULL ? SL_OUT_OF_MEMORY : SL_OK;
     double last = INFINITY;
-    for (int i = 0; i < max_solves && status == SL_OK; i++) {
+    for (int i = 0; i < max_solves; i++) {
         double size;
-        residual(layout, uv, rhs);
-        sl_cholesky_solve(factor, rhs, 1, work);
-        const double change = correct(layout, rhs, uv, &size);
-        status = isfinite(change) ? SL_OK : SL_SINGULAR;
+        residual(&r->layout, r->uv, r->rhs);
+        sl_cholesky_solve(r->factor, r->rhs, 1, r->work);
+        const double change = correct(&r->layout, r->rhs, r->uv, &size);
+        if (!isfinite(change)) {
+            return SL_SINGULAR;
+        }
         if (change <= refined * size || change > worthwhile * last) {
             break;
         }
         last = change;
     }
-    sl_free(rhs);
-    sl_free(work);
-    return status;
-}
-
-static sl_status solve(sl_layout *layout, const sl_context *context, double *uv)
-{
-    sl_status status = SL_OK;
-    sl_csc *A = NULL;
-    sl_cholesky *factor = NULL;
-    double *xyz = sl_alloc(6 * (int64_t)layout->nfree, sizeof *xyz);
-    if (xyz == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    sl_layout_points(layout, xyz);
-    SL_TRY(sl_layout_matrix(layout, &A));
-    sl_cholesky_def def = sl_cholesky_default();
-    def.xyz = xyz;
-    SL_TRY(sl_cholesky_analyze(A, &def, &factor));
-    SL_TRY(sl_report_progress(context, "layout", 0.5));
-    SL_TRY(factor_or_singular(factor, A));
-    SL_TRY(refine(layout, factor, uv));
-cleanup:
-    sl_cholesky_free(factor);
-    sl_csc_free(A);
-    sl_free(xyz);
-    return status;
+    return SL_OK;
 }
 
 /* To the 3D area; left as it is where either area vanishes. */
@@ -175,23 +159,121 @@ static void scale_to_area(const sl_patch *patch, double *uv)
     }
 }
 
+static sl_status analyze(sl_reconstruct *r)
+{
+    sl_status status = SL_OK;
+    double *xyz = sl_alloc(6 * (int64_t)r->layout.nfree, sizeof *xyz);
+    if (xyz == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    sl_layout_points(&r->layout, xyz);
+    SL_TRY(sl_layout_pattern(&r->layout, &r->A));
+    sl_cholesky_def def = sl_cholesky_default();
+    def.xyz = xyz;
+    SL_TRY(sl_cholesky_analyze(r->A, &def, &r->factor));
+    r->rhs = sl_alloc(2 * (int64_t)r->layout.nfree, sizeof *r->rhs);
+    r->work = sl_alloc(sl_cholesky_work_size(r->factor, 1), sizeof *r->work);
+    r->uv = sl_alloc(2 * (int64_t)r->layout.patch->nv, sizeof *r->uv);
+    status = r->rhs == NULL || r->work == NULL || r->uv == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+cleanup:
+    sl_free(xyz);
+    return status;
+}
+
+sl_status sl_reconstruct_create(const sl_patch *patch, sl_reconstruct **out)
+{
+    sl_status status = SL_OK;
+    *out = NULL;
+    sl_reconstruct *r = sl_calloc(1, sizeof *r);
+    if (r == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    SL_TRY(sl_layout_init(&r->layout, patch));
+    SL_TRY(analyze(r));
+    const int32_t *pin = r->layout.pin;
+    r->length = sl_vec3_distance(&patch->xyz[3 * (int64_t)pin[0]], &patch->xyz[3 * (int64_t)pin[1]]);
+    r->length = r->length > 0.0 ? r->length : 1.0;
+    *out = r;
+    r = NULL;
+cleanup:
+    sl_reconstruct_free(r);
+    return status;
+}
+
+sl_status sl_reconstruct_solve(sl_reconstruct *r, const double *angle, const sl_context *context, double *uv)
+{
+    sl_status status = SL_OK;
+    const sl_patch *patch = r->layout.patch;
+    const size_t size = 2 * (size_t)patch->nv * sizeof *uv;
+    for (int32_t t = 0; t < patch->nt; t++) {
+        shape_triangle(&angle[3 * (int64_t)t], &r->layout.cot[3 * (int64_t)t], &r->layout.w[6 * (int64_t)t]);
+    }
+    memset(r->uv, 0, size);
+    r->uv[2 * (int64_t)r->layout.pin[1]] = r->length;
+    sl_layout_fill(&r->layout, r->A);
+    SL_TRY(sl_report_progress(context, "layout", 0.5));
+    SL_TRY(factor_or_singular(r->factor, r->A));
+    SL_TRY(refine(r));
+    scale_to_area(patch, r->uv);
+    memcpy(uv, r->uv, size);
+cleanup:
+    return status;
+}
+
+void sl_reconstruct_free(sl_reconstruct *r)
+{
+    if (r == NULL) {
+        return;
+    }
+    sl_layout_clear(&r->layout);
+    sl_csc_free(r->A);
+    sl_cholesky_free(r->factor);
+    sl_free(r->rhs);
+    sl_free(r->work);
+    sl_free(r->uv);
+    sl_free(r);
+}
+
+static double corner_angle(const double *p, const double *q, const double *r)
+{
+    const double a[2] = {q[0] - p[0], q[1] - p[1]}, b[2] = {r[0] - p[0], r[1] - p[1]};
+    return atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+}
+
+sl_layout_quality sl_layout_judge(const sl_patch *patch, const double *angle, const double *uv)
+{
+    sl_layout_quality quality = {0};
+    double least = INFINITY, most = 0.0;
+    for (int32_t t = 0; t < patch->nt; t++) {
+        const double *p[3];
+        for (int k = 0; k < 3; k++) {
+            p[k] = &uv[2 * (int64_t)patch->tri[3 * (int64_t)t + k]];
+        }
+        quality.flipped += sl_orient2d(p[0], p[1], p[2]) <= 0;
+        for (int k = 0; k < 3; k++) {
+            const double error = corner_angle(p[k], p[(k + 1) % 3], p[(k + 2) % 3]) - angle[3 * (int64_t)t + k];
+            quality.angle_error = fabs(error) <= quality.angle_error ? quality.angle_error : fabs(error);
+        }
+        const double flat = fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+        const double ratio = flat / (2.0 * sl_patch_triangle_area(patch, t));
+        if (ratio > 0.0 && isfinite(ratio)) {
+            least = fmin(least, ratio);
+            most = fmax(most, ratio);
+        }
+    }
+    quality.area_ratio = most > 0.0 ? most / least : 1.0;
+    return quality;
+}
+
 sl_status sl_conformal_layout(const sl_patch *patch, const double *angle, const sl_context *context, double *uv)
 {
     sl_status status = SL_OK;
-    sl_layout layout = {0};
+    sl_reconstruct *r = NULL;
     SL_TRY(sl_report_progress(context, "layout", 0.0));
-    SL_TRY(sl_layout_init(&layout, patch));
-    for (int32_t t = 0; t < patch->nt; t++) {
-        shape_triangle(&angle[3 * (int64_t)t], &layout.cot[3 * (int64_t)t], &layout.w[6 * (int64_t)t]);
-    }
-    memset(uv, 0, 2 * (size_t)patch->nv * sizeof *uv);
-    const double length =
-        sl_vec3_distance(&patch->xyz[3 * (int64_t)layout.pin[0]], &patch->xyz[3 * (int64_t)layout.pin[1]]);
-    uv[2 * (int64_t)layout.pin[1]] = length > 0.0 ? length : 1.0;
-    SL_TRY(solve(&layout, context, uv));
-    scale_to_area(patch, uv);
+    SL_TRY(sl_reconstruct_create(patch, &r));
+    SL_TRY(sl_reconstruct_solve(r, angle, context, uv));
 cleanup:
-    sl_layout_clear(&layout);
+    sl_reconstruct_free(r);
     return status;
 }
 

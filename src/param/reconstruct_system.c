@@ -76,9 +76,12 @@ sl_status sl_layout_init(sl_layout *layout, const sl_patch *patch)
     choose_pins(patch, layout->pin);
     SL_TRY(layout->pin[1] >= 0 ? SL_OK : SL_SINGULAR);
     layout->unknown = sl_alloc(patch->nv, sizeof *layout->unknown);
-    layout->cot = sl_alloc(3 * (int64_t)patch->nt, sizeof *layout->cot);
-    layout->w = sl_alloc(6 * (int64_t)patch->nt, sizeof *layout->w);
-    if (layout->unknown == NULL || layout->cot == NULL || layout->w == NULL) {
+    layout->cot = sl_calloc(3 * (int64_t)patch->nt, sizeof *layout->cot);
+    layout->w = sl_calloc(6 * (int64_t)patch->nt, sizeof *layout->w);
+    layout->fill = sl_alloc(2 * (int64_t)patch->nv, sizeof *layout->fill);
+    layout->last = sl_alloc(2 * (int64_t)patch->nv, sizeof *layout->last);
+    if (layout->unknown == NULL || layout->cot == NULL || layout->w == NULL || layout->fill == NULL ||
+        layout->last == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
@@ -95,6 +98,8 @@ cleanup:
 void sl_layout_clear(sl_layout *layout)
 {
     sl_free(layout->unknown);
+    sl_free(layout->fill);
+    sl_free(layout->last);
     sl_free(layout->cot);
     sl_free(layout->w);
     *layout = (sl_layout){0};
@@ -196,17 +201,15 @@ static void add_rows(const sl_layout *layout, columns *out)
     }
 }
 
-sl_status sl_layout_matrix(const sl_layout *layout, sl_csc **out)
+sl_status sl_layout_pattern(sl_layout *layout, sl_csc **out)
 {
-    sl_status status = SL_OUT_OF_MEMORY;
+    sl_status status = SL_OK;
     sl_csc *A = NULL;
     const int32_t n = 2 * layout->nfree;
-    columns cols = {.fill = sl_calloc(n, sizeof *cols.fill), .last = sl_alloc(n, sizeof *cols.last)};
-    if (cols.fill == NULL || cols.last == NULL) {
-        goto cleanup;
-    }
-    add_rows(layout, &cols);
+    columns cols = {.fill = layout->fill, .last = layout->last};
     int64_t nnz = 0;
+    memset(cols.fill, 0, (size_t)n * sizeof *cols.fill);
+    add_rows(layout, &cols);
     for (int32_t j = 0; j < n; j++) {
         nnz += cols.fill[j];
     }
@@ -215,15 +218,17 @@ sl_status sl_layout_matrix(const sl_layout *layout, sl_csc **out)
     for (int32_t j = 0; j < n; j++) {
         A->colptr[j] = start;
         start += cols.fill[j];
-        cols.fill[j] = A->colptr[j];
     }
     A->colptr[n] = start;
-    cols.row = A->row;
-    cols.val = A->val;
-    add_rows(layout, &cols);
+    sl_layout_fill(layout, A);
     *out = A;
 cleanup:
-    sl_free(cols.fill);
-    sl_free(cols.last);
     return status;
+}
+
+void sl_layout_fill(sl_layout *layout, sl_csc *A)
+{
+    columns cols = {.fill = layout->fill, .last = layout->last, .row = A->row, .val = A->val};
+    memcpy(cols.fill, A->colptr, (size_t)A->ncols * sizeof *cols.fill);
+    add_rows(layout, &cols);
 }

@@ -12,6 +12,8 @@ typedef struct sl_layout {
     int32_t pin[2];
     int32_t nfree;
     int32_t *unknown; /* nv: f, -1 for the pins */
+    int64_t *fill;    /* 2 nfree: scratch */
+    int32_t *last;    /* 2 nfree: scratch */
     double *cot;      /* 3 nt, filled by the caller */
     double *w;        /* 6 nt: W_k / sqrt(2 A) of each triangle, filled by the caller */
 } sl_layout;
@@ -21,8 +23,11 @@ typedef struct sl_layout {
 SL_NODISCARD sl_status sl_layout_init(sl_layout *layout, const sl_patch *patch);
 void sl_layout_clear(sl_layout *layout);
 
-/* Lower triangle of [R -S; S R] over the free vertices. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_layout_matrix(const sl_layout *layout, sl_csc **out);
+/* Lower triangle of [R -S; S R] over the free vertices, filled by the present layout->cot. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_layout_pattern(sl_layout *layout, sl_csc **out);
+
+/* Other values, by the present layout->cot. A: of sl_layout_pattern. Allocates nothing. */
+void sl_layout_fill(sl_layout *layout, sl_csc *A);
 
 /* The 3D position of each unknown's vertex, twice per free vertex: xyz 2 nfree x 3. */
 void sl_layout_points(const sl_layout *layout, double *xyz);

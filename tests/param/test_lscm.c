@@ -118,7 +118,7 @@ static void check_matrix(const sl_patch *patch)
         }
     }
     sl_csc *N = NULL;
-    assert_int_equal(sl_layout_matrix(&layout, &N), SL_OK);
+    assert_int_equal(sl_layout_pattern(&layout, &N), SL_OK);
     assert_int_equal(sl_csc_check(N, true), SL_OK);
     const size_t m = 2 * (size_t)patch->nt;
     double *A = conformal_rows(patch);
