@@ -38,7 +38,7 @@ cleanup:
     return status;
 }
 
-/* Facets by component, units, places. label: nf. */
+/* Facets by component, units, places. */
 static sl_status list_facets(const sl_mesh *mesh, sl_symmetry *s)
 {
     s->component = sl_alloc(mesh->nf, sizeof *s->component);

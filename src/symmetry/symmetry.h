@@ -93,7 +93,7 @@ SL_NODISCARD sl_status sl_symmetry_find(const sl_mesh *mesh, const int32_t *part
 void sl_symmetry_free(sl_symmetry *symmetry); /* NULL is a no-op */
 
 /* The isomorphism of the component of corner a onto that of b that sends a to b, if there is one; image: nh corners, -1
- * outside the component of a (and everywhere when *found is false). Linear in the component: both are walked at once
+ * outside the component of a (and everywhere when *found is false). Linear in the mesh: both are walked at once
  * (paper, Sec. 4.3). SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_symmetry_traverse(const sl_mesh *mesh, int32_t a, int32_t b, bool reverses, int32_t *image,
                                             bool *found);
