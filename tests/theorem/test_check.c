@@ -234,6 +234,56 @@ static void another_choice_of_halves_changes_no_verdict(void **state)
     }
 }
 
+/* With lowest pairs only there is no count of values that are not 0: a zero is shown by the component it lies off, or
+ * by another mirror. */
+static void zeros_are_shown_without_whole_spectra(void **state)
+{
+    (void)state;
+    sl_edges lobes = {.pairs = 220, .fixed = 1};
+    for (int32_t i = 1; i < 220; i++) {
+        if (i != 97) {
+            sl_edges_within(&lobes, i, i - 1);
+        }
+    }
+    sl_edges_spoke(&lobes, 0, 0);
+    sl_edges_spoke(&lobes, 97, 0);
+    sl_edges_across(&lobes, 40, 40);
+    sl_edges_across(&lobes, 150, 150);
+    sl_theorem_graph *graph = finish(&lobes);
+    sl_theorem_result result = check(graph);
+    assert_none_violated(&result);
+    const sl_theorem_tally *axis = &result.tally[SL_THEOREM_AXIS];
+    assert_true(axis->signs == axis->zeros * 2 && axis->zeros > 10); /* each vector is 0 on one of the two lobes */
+    assert_int_equal(axis->signs_undecided, 0);
+    sl_theorem_graph_free(graph);
+
+    const int32_t height = 23,
+                  length = 10; /* half a grid; a second mirror fixes its middle row; prime: no other zeros */
+    sl_edges grid = {.pairs = height * length};
+    for (int32_t i = 0; i < height * length; i++) {
+        if (i % length + 1 < length) {
+            sl_edges_within(&grid, i, i + 1);
+        }
+        if (i + length < height * length) {
+            sl_edges_within(&grid, i, i + length);
+        }
+        if (i % length == 0) {
+            sl_edges_across(&grid, i, i);
+        }
+    }
+    graph = finish(&grid);
+    graph->second = sl_alloc(sl_theorem_nodes(graph), sizeof *graph->second);
+    for (int32_t i = 0; i < height * length; i++) {
+        graph->second[i] = (height - 1 - i / length) * length + i % length;
+        graph->second[i + height * length] = graph->second[i] + height * length;
+    }
+    result = check(graph);
+    assert_none_violated(&result);
+    assert_true(axis->zeros >= 4 && axis->zeros <= 15);
+    assert_int_equal(axis->signs_undecided, 0);
+    sl_theorem_graph_free(graph);
+}
+
 /* 10 x 300 quads mirrored along their length: 30 symmetric vectors come before the first antisymmetric one, which is
  * beyond what the method computes. */
 static void on_a_long_strip_the_lowest_antisymmetric_vector_is_not_among_thirty(void **state)
@@ -301,6 +351,7 @@ int main(void)
         cmocka_unit_test(lobes_have_a_statement_each),
         cmocka_unit_test(mirrors_of_d3_have_no_common_basis_and_those_of_d2_have),
         cmocka_unit_test(another_choice_of_halves_changes_no_verdict),
+        cmocka_unit_test(zeros_are_shown_without_whole_spectra),
         cmocka_unit_test(on_a_long_strip_the_lowest_antisymmetric_vector_is_not_among_thirty),
         cmocka_unit_test(our_solver_and_lapack_give_the_same_verdicts),
     };

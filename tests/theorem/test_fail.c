@@ -2,6 +2,7 @@
 #include "support/test_support.h"
 
 #include "base/memory.h"
+#include "theorem/blocks_internal.h"
 #include "theorem/families_internal.h"
 
 #include <math.h>
@@ -80,6 +81,12 @@ static void corrupt_parity(const sl_theorem_graph *graph, sl_solution *s)
     for (int32_t i = 0; i < sl_theorem_nodes(graph); i++) { /* a little of a symmetric vector in an antisymmetric one */
         s->whole.vector[(int64_t)s->whole.n * s->lowest_skew + i] += 1e-7;
     }
+}
+
+static void corrupt_count(const sl_theorem_graph *graph, sl_solution *s)
+{
+    (void)graph;
+    s->skew[s->whole.clusters / 2] ^= 1;
 }
 
 static void corrupt_axis(const sl_theorem_graph *graph, sl_solution *s)
@@ -163,8 +170,9 @@ static void every_statement_notices_what_is_corrupted_behind_its_back(void **sta
         corrupt_fn *corrupt;
         state_fn *ask;
     } table[] = {{SL_THEOREM_SPECTRA, corrupt_value, ask_spectra}, {SL_THEOREM_BASIS, corrupt_parity, ask_basis},
-                 {SL_THEOREM_AXIS, corrupt_axis, ask_axis},        {SL_THEOREM_HALF, corrupt_half, ask_blocks},
-                 {SL_THEOREM_WHOLE, corrupt_axis, ask_blocks},     {SL_THEOREM_FIXED, corrupt_fixed, ask_fixed}};
+                 {SL_THEOREM_BASIS, corrupt_count, ask_basis},     {SL_THEOREM_AXIS, corrupt_axis, ask_axis},
+                 {SL_THEOREM_HALF, corrupt_half, ask_blocks},      {SL_THEOREM_WHOLE, corrupt_axis, ask_blocks},
+                 {SL_THEOREM_FIXED, corrupt_fixed, ask_fixed}};
     const sl_theorem_def def = sl_theorem_default();
     for (size_t k = 0; k < SL_COUNTOF(table); k++) {
         for (int32_t broken = 0; broken < 2; broken++) {
@@ -211,6 +219,57 @@ static void a_second_mirror_that_is_none_is_noticed(void **state)
     sl_theorem_graph_free(graph);
 }
 
+/* A balanced component passed off as none: its lowest antisymmetric seam is the axis after all. */
+static void a_seam_that_is_the_axis_of_an_unbalanced_half_is_noticed(void **state)
+{
+    (void)state;
+    const sl_theorem_def def = sl_theorem_default();
+    sl_theorem_graph *graph = plain_sample(4);
+    sl_half half;
+    sl_solution solution;
+    sl_theorem_result result = {.failed = SL_THEOREM_STATEMENTS};
+    assert_int_equal(sl_half_create(graph, &half), SL_OK);
+    assert_int_equal(sl_solution_create(graph, &half, &def, NULL, &solution), SL_OK);
+    half.balanced[0] = false;
+    assert_int_equal(sl_state_blocks(graph, &half, &solution, &def, &result), SL_OK);
+    assert_int_equal(result.tally[SL_THEOREM_CROSSED].violated, 1);
+    assert_int_equal(result.failed, SL_THEOREM_CROSSED);
+    sl_solution_clear(&solution);
+    sl_half_clear(&half);
+    sl_theorem_graph_free(graph);
+}
+
+static void signs_are_counted_against_their_bound(void **state)
+{
+    (void)state;
+    const double value[] = {-0.3, -0.5, 1e-9, -0.2, -1e-7, -0.4};
+    sl_sign_count count = sl_count_signs(value, 6, 1e-6);
+    assert_int_equal(count.undecided, 2);
+    assert_false(count.mixed);
+    count = sl_count_signs(value, 6, 1e-10);
+    assert_int_equal(count.undecided, 0);
+    assert_true(count.mixed);
+}
+
+static void sides_that_fall_apart_are_noticed(void **state)
+{
+    (void)state;
+    sl_edges edges = {.pairs = 3};
+    sl_edges_within(&edges, 0, 1);
+    sl_edges_within(&edges, 1, 2);
+    sl_edges_across(&edges, 0, 0);
+    sl_theorem_graph *graph = finish(&edges);
+    bool connected;
+    const uint8_t halves[] = {1, 1, 1, 0, 0, 0}, apart[] = {1, 0, 1, 1, 1, 1}, all[] = {1, 1, 1, 1, 1, 1};
+    assert_int_equal(sl_seam_connected(graph, halves, &connected), SL_OK);
+    assert_true(connected);
+    assert_int_equal(sl_seam_connected(graph, apart, &connected), SL_OK);
+    assert_false(connected);
+    assert_int_equal(sl_seam_connected(graph, all, &connected), SL_OK);
+    assert_true(connected);
+    sl_theorem_graph_free(graph);
+}
+
 static void a_seam_is_told_from_the_axis_edge_by_edge(void **state)
 {
     (void)state;
@@ -244,6 +303,9 @@ int main(void)
         cmocka_unit_test(a_moved_vector_violates_the_spectra_and_a_changed_sign_its_statements),
         cmocka_unit_test(every_statement_notices_what_is_corrupted_behind_its_back),
         cmocka_unit_test(a_second_mirror_that_is_none_is_noticed),
+        cmocka_unit_test(a_seam_that_is_the_axis_of_an_unbalanced_half_is_noticed),
+        cmocka_unit_test(signs_are_counted_against_their_bound),
+        cmocka_unit_test(sides_that_fall_apart_are_noticed),
         cmocka_unit_test(a_seam_is_told_from_the_axis_edge_by_edge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -137,6 +137,35 @@ static void repeated_eigenvalues_form_clusters(void **state)
     sl_theorem_graph_free(graph);
 }
 
+/* A torus of 30 x 30 has eigenvalues 0, then 4 equal ones, then 4: of seven pairs asked for, two belong to a cluster
+ * that goes on. */
+static void a_cluster_cut_by_the_count_is_dropped(void **state)
+{
+    (void)state;
+    const int32_t side = 30, n = side * side;
+    sl_edges edges = {.fixed = n};
+    sl_theorem_graph *graph;
+    sl_csc *L;
+    sl_pairs p;
+    double *ones = sl_alloc(n, sizeof *ones);
+    for (int32_t i = 0; i < n; i++) {
+        ones[i] = 1.0 / side;
+        sl_edges_fixed(&edges, i, i / side * side + (i + 1) % side);
+        sl_edges_fixed(&edges, i, (i + side) % n);
+    }
+    assert_int_equal(sl_edges_finish(&edges, &graph), SL_OK);
+    assert_int_equal(sl_matrix_whole(graph, &L), SL_OK);
+    assert_int_equal(sl_pairs_solve(L, 7, ones, 1, 1e-12, NULL, &p), SL_OK);
+    assert_int_equal(p.count, 5);
+    assert_int_equal(p.clusters, 2);
+    assert_true(p.bound[1] < 1e-6);
+    assert_true(p.end > p.lambda[4] + 0.01 && p.end < 4.0 - 4.0 * cos(2.0 * pi / side) + 1e-9);
+    sl_pairs_clear(&p);
+    sl_free(ones);
+    sl_csc_free(L);
+    sl_theorem_graph_free(graph);
+}
+
 /* Against LAPACK: clusters whose part of e_f is not 0. High-entropy integer weights, and graphs with symmetries. */
 static void the_recurrence_counts_the_eigenvalues_seen_from_a_row(void **state)
 {
@@ -189,6 +218,7 @@ int main(void)
         cmocka_unit_test(every_vector_of_a_path_is_within_its_bound_and_the_bound_is_no_empty_word),
         cmocka_unit_test(a_moved_vector_is_unsound_and_its_bound_covers_the_move),
         cmocka_unit_test(repeated_eigenvalues_form_clusters),
+        cmocka_unit_test(a_cluster_cut_by_the_count_is_dropped),
         cmocka_unit_test(the_recurrence_counts_the_eigenvalues_seen_from_a_row),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
