@@ -147,3 +147,47 @@ sl_crossing sl_segments_cross(const double a[2], const double b[2], const double
                        (cda == 0 && within(c, d, a)) || (cdb == 0 && within(c, d, b));
     return touch ? SL_CROSS_TOUCH : SL_CROSS_NONE;
 }
+
+/* No point of q lies strictly left of the line ab. */
+static bool all_right_of(const double a[2], const double b[2], const double q[6])
+{
+    return sl_orient2d_quick(a, b, q) <= 0 && sl_orient2d_quick(a, b, q + 2) <= 0 &&
+           sl_orient2d_quick(a, b, q + 4) <= 0;
+}
+
+/* By the edges of p: p is left of each. */
+static sl_triangle_order part_by_edges(const double p[6], const double q[6])
+{
+    bool beside = false;
+    for (int k = 0; k < 3; k++) {
+        const double *a = p + 2 * k, *b = p + 2 * ((k + 1) % 3);
+        if (all_right_of(a, b, q)) {
+            if (a[0] != b[0]) {
+                return a[0] < b[0] ? SL_TRIANGLE_ABOVE : SL_TRIANGLE_BELOW;
+            }
+            beside = true;
+        }
+    }
+    return beside ? SL_TRIANGLES_BESIDE : SL_TRIANGLES_OVERLAP;
+}
+
+sl_triangle_order sl_triangles_order(const double p[6], const double q[6])
+{
+    const double p_low = fmin(p[1], fmin(p[3], p[5])), p_high = fmax(p[1], fmax(p[3], p[5]));
+    const double q_low = fmin(q[1], fmin(q[3], q[5])), q_high = fmax(q[1], fmax(q[3], q[5]));
+    if (p_low >= q_high) {
+        return SL_TRIANGLE_ABOVE;
+    }
+    if (q_low >= p_high) {
+        return SL_TRIANGLE_BELOW;
+    }
+    const sl_triangle_order by_p = part_by_edges(p, q);
+    if (by_p == SL_TRIANGLE_ABOVE || by_p == SL_TRIANGLE_BELOW) {
+        return by_p;
+    }
+    const sl_triangle_order by_q = part_by_edges(q, p);
+    if (by_q == SL_TRIANGLE_ABOVE || by_q == SL_TRIANGLE_BELOW) {
+        return by_q == SL_TRIANGLE_ABOVE ? SL_TRIANGLE_BELOW : SL_TRIANGLE_ABOVE;
+    }
+    return by_p == SL_TRIANGLES_BESIDE || by_q == SL_TRIANGLES_BESIDE ? SL_TRIANGLES_BESIDE : SL_TRIANGLES_OVERLAP;
+}
