@@ -17,6 +17,7 @@ static const verb_entry verbs[] = {
     {"check", cli_check, "what is wrong with a mesh and how it would be repaired"},
     {"segment", cli_segment, "the charts only: labels, seam edges, a coloured PLY"},
     {"spectrum", cli_spectrum, "eigenvectors of the facet graph and the cuts they propose"},
+    {"abf", cli_abf, "one chart flattened an iteration at a time, with angles and lines as you ask"},
     {"theorem", cli_theorem, "the symmetric-graph theorem, checked on random graphs and meshes; TAP for CI"},
     {"demo", cli_demo, "the whole way on a generated mesh, with pictures"},
 };

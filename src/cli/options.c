@@ -93,6 +93,16 @@ static int set_size(const cli_verb *verb, const cli_option *o, const char *text)
     return -1;
 }
 
+static int add_item(const cli_verb *verb, const cli_option *o, const char *text)
+{
+    cli_list *list = o->target;
+    if (list->count == CLI_MAX_ITEMS) {
+        return usage_error(verb, "too often:", o->name);
+    }
+    list->item[list->count++] = text;
+    return -1;
+}
+
 static int set_option(const cli_verb *verb, const cli_option *o, const char *text)
 {
     char what[160];
@@ -104,6 +114,8 @@ static int set_option(const cli_verb *verb, const cli_option *o, const char *tex
     case CLI_TEXT:
         *(const char **)o->target = text;
         return -1;
+    case CLI_LIST:
+        return add_item(verb, o, text);
     case CLI_INT:
     case CLI_REAL:
         return set_number(verb, o, text);

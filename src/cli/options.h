@@ -12,8 +12,17 @@ typedef enum cli_kind {
     CLI_REAL,   /* double in [lo, hi] */
     CLI_SIZE,   /* int64_t bytes, from "800M" or "2.5G" (powers of 1024), at least lo and at most hi */
     CLI_TEXT,   /* const char *, borrowed from argv */
+    CLI_LIST,   /* cli_list: an option that may be given again and again */
     CLI_CHOICE  /* int32_t: position in choices */
 } cli_kind;
+
+enum { CLI_MAX_ITEMS = 256 };
+
+/* The values of an option in the order given; borrowed from argv. */
+typedef struct cli_list {
+    int32_t count;
+    const char *item[CLI_MAX_ITEMS];
+} cli_list;
 
 typedef struct cli_option {
     const char *name; /* without the dashes */

@@ -51,7 +51,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure segment spectrum theorem demo; do
+for verb in unwrap check measure segment spectrum abf theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -98,6 +98,38 @@ expect 0 "$seamlab" unwrap $mesh -o preview.obj --preview pictures/
 [ -s pictures/both.png ] || complain "no preview"
 expect 0 "$seamlab" unwrap $mesh -o - --quiet
 contains out.txt '^vt '
+
+# --- abf: the worked example of reports/design/abf-by-hand.md, constraints, what cannot be, what is no disk
+printf 'v 0 0 1\nv 2 0 0\nv 1 1 0\nv 0 2 0\nv -1 1 0\nv -2 0 0\nv -1 -1 0\nv 0 -2 0\nv 1 -1 0\n' >tent.obj
+printf 'f 1 %d %d\n' 2 3 3 4 4 5 5 6 6 7 7 8 8 9 9 2 >>tent.obj
+expect 0 "$seamlab" abf tent.obj --report tent.html --trace tent.json
+contains out.txt 'converged after 1 iteration'
+contains out.txt '0.02493134'
+contains out.txt '2.074'
+contains tent.html 'sl_abf_eval_g2'
+json tent.json
+expect 0 "$seamlab" abf tent.obj --json
+cmp -s out.txt tent.json || complain "abf --json and --trace differ"
+expect 0 "$seamlab" abf tent.obj --rectangle 1,3,5,7 --pin 1=0,0 --pin 3=1,0 --step
+contains out.txt '0.10328194'
+contains out.txt '1 dependent row'
+expect 0 "$seamlab" abf tent.obj --angle 1=90 --straight 1,2,3 --right-angle 8 --wheel ratio --newton exact
+expect 0 "$seamlab" abf tent.obj --wheel product --energy unweighted --quiet
+[ ! -s out.txt ] || complain "abf --quiet was not"
+expect 4 "$seamlab" abf tent.obj --angle 1=400
+contains err.txt 'vertex 1'
+expect 4 "$seamlab" abf tent.obj --angle 1=100 --iterations 0
+expect 3 "$seamlab" abf tent.obj --angle 77=90
+contains err.txt 'no vertex 77'
+expect 2 "$seamlab" abf tent.obj --angle 1
+expect 2 "$seamlab" abf tent.obj --rectangle 1,3,5
+expect 2 "$seamlab" abf tent.obj --pin 1=0,0 --pin 2=1,0 --pin 3=1,1
+expect 0 "$seamlab" abf $mesh --quiet --trace hand.json
+json hand.json
+expect 0 "$seamlab" abf $mesh --chart 1
+contains err.txt 'is no disk'
+expect 3 "$seamlab" abf $mesh --chart 100000
+contains err.txt 'there is no chart'
 
 # --- warnings, --strict, and a cap that leaves nothing to deliver
 expect 0 "$seamlab" demo --model sphere -o ball --quiet

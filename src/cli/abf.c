@@ -1,0 +1,224 @@
+/* seamlab abf: angle based flattening of one chart, an iteration at a time, with constraints. */
+#define _POSIX_C_SOURCE 200809L
+#include "base/memory.h"
+#include "cli/abf_trace.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <termios.h>
+#include <unistd.h>
+
+static const cli_verb verb = {
+    .name = "abf",
+    .usage = "seamlab abf MESH [--step] [--iterations N] [--trace FILE.json] [--report FILE.html] [constraints]",
+    .summary = "Flattens one chart by ABF++ and shows every Newton iteration: energy, gradient, residuals of the\n"
+               "constraints, sizes of the matrices, and the matrices of a small chart (reports/design/abf-by-hand.md\n"
+               "follows one with pencil and paper). Constraints (paper, Sec. 4.2) name vertices by input number,\n"
+               "counted from 0; V/F is the copy of V at facet F where seams give it several. Exit 4: they\n"
+               "contradict one another, or the solver did not converge.",
+    .examples = "  seamlab abf chart.obj --step\n"
+                "  seamlab abf chart.obj --rectangle 1,3,5,7 --report steps.html\n"
+                "  seamlab abf chart.obj --angle 12=90 --straight 3,40,41,9 --trace steps.json\n"
+                "  seamlab abf model.obj --chart 2 --wheel ratio --energy unweighted\n"
+                "  seamlab abf model.obj --seams edges.csv --chart 0 --pin 4=0,0 --pin 9=1,0\n",
+    .min_files = 1,
+    .max_files = 1,
+};
+
+typedef struct abf_options {
+    cli_run run;
+    abf_source source;
+    abf_asked asked;
+    bool step;
+    int32_t energy, wheel, newton;
+    const char *trace, *report;
+    sl_abf_def def;
+} abf_options;
+
+enum { OWN_OPTIONS = 15, MOST_ITERATIONS = 1000 };
+
+static void option_table(abf_options *o, cli_option *table)
+{
+    const cli_option own[OWN_OPTIONS] = {
+        {"step", 0, CLI_FLAG, &o->step, 0, 0, NULL, NULL, "an iteration a key: q quits, r runs to the end"},
+        {"iterations", 0, CLI_INT, &o->def.max_iterations, 0, MOST_ITERATIONS, NULL, "N", "at most (40)"},
+        {"trace", 0, CLI_TEXT, &o->trace, 0, 0, NULL, "FILE", "JSON of all iterations: angles, residuals, layouts"},
+        {"report", 0, CLI_TEXT, &o->report, 0, 0, NULL, "FILE", "HTML: each layout, convergence, the computation"},
+        {"angle", 0, CLI_LIST, &o->asked.angle, 0, 0, NULL, "V=DEG", "angle of the chart at border vertex V"},
+        {"straight", 0, CLI_LIST, &o->asked.straight, 0, 0, NULL, "V1,V2,...", "a path of edges becomes straight"},
+        {"right-angle", 0, CLI_LIST, &o->asked.right, 0, 0, NULL, "V", "lines and border meet at right angles"},
+        {"rectangle", 0, CLI_LIST, &o->asked.rectangle, 0, 0, NULL, "A,B,C,D", "the border, by its four corners"},
+        {"pin", 0, CLI_LIST, &o->asked.pin, 0, 0, NULL, "V=U,V", "where a vertex lies: once or twice (similarity)"},
+        {"energy", 0, CLI_CHOICE, &o->energy, 0, 0, "weighted|unweighted", NULL, "Eq. 1 with 1/phi^2 (default) or 1"},
+        {"wheel", 0, CLI_CHOICE, &o->wheel, 0, 0, "log|product|ratio", NULL, "form of g3; ratio is Eq. 4"},
+        {"newton", 0, CLI_CHOICE, &o->newton, 0, 0, "dropped|exact", NULL, "curvature of the constraints"},
+        {"tolerance", 0, CLI_REAL, &o->def.gradient_tolerance, 1e-15, 1.0, NULL, "G", "on |grad| (1e-6)"},
+        {"chart", 0, CLI_INT, &o->source.chart, 0, 2147483647, NULL, "N", "of a mesh that is no disk (the largest)"},
+        {"seams", 0, CLI_TEXT, &o->source.seams, 0, 0, NULL, "FILE", "cut here: a line of two vertices an edge"},
+    };
+    memcpy(table, own, sizeof own);
+    cli_common_options(&o->run, table + OWN_OPTIONS);
+}
+
+/* One key from the terminal, without waiting for Enter; 'q' when there is no more. */
+static char read_key(void)
+{
+    struct termios cooked, raw;
+    char key = 'q';
+    if (tcgetattr(STDIN_FILENO, &cooked) != 0) {
+        return 'r';
+    }
+    raw = cooked;
+    raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
+    raw.c_cc[VMIN] = 1;
+    raw.c_cc[VTIME] = 0;
+    tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+    if (read(STDIN_FILENO, &key, 1) != 1) {
+        key = 'q';
+    }
+    tcsetattr(STDIN_FILENO, TCSANOW, &cooked);
+    return key;
+}
+
+static void show_matrices(const sl_abf *solver, bool schur)
+{
+    sl_csc *J = NULL;
+    if (sl_abf_jacobian(solver, &J) == SL_OK) {
+        abf_print_matrix("J (rows g1, g2, g3; columns angles)", J, false);
+    }
+    sl_csc_free(J);
+    if (schur) {
+        abf_print_matrix("Schur complement (rows g2, g3)", sl_abf_schur(solver), true);
+    }
+    putchar('\n');
+}
+
+static sl_status iterate(abf_options *o, abf_trace *trace, sl_abf *solver)
+{
+    const bool talk = !o->run.json && !o->run.quiet;
+    const bool small = talk && trace->pick->patch->nt <= ABF_MATRIX_TRIANGLES;
+    bool wait = o->step && talk && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
+    const sl_abf_info *info = sl_abf_info_of(solver);
+    sl_status status = abf_trace_add(trace, solver, &o->run.context);
+    if (status == SL_OK && talk) {
+        abf_print_head(trace);
+        abf_print_frame(trace, 0);
+    }
+    while (status == SL_OK && info->iterations < o->def.max_iterations && !info->converged && !info->stalled) {
+        const char key = wait ? read_key() : 'r';
+        if (key == 'q') {
+            break;
+        }
+        wait = wait && key != 'r';
+        const int32_t before = info->iterations;
+        status = sl_abf_step(solver, 1, &o->run.context);
+        if (status == SL_OK) {
+            status = abf_trace_add(trace, solver, &o->run.context);
+        }
+        if (status == SL_OK && talk) {
+            abf_print_frame(trace, trace->count - 1);
+        }
+        if (status == SL_OK && wait && small) {
+            show_matrices(solver, true);
+        }
+        if (info->iterations == before) {
+            break;
+        }
+    }
+    return status;
+}
+
+/* Everything that is wanted of the finished trace. */
+static sl_status deliver(abf_options *o, const abf_trace *trace, sl_diag *diag)
+{
+    sl_status status = SL_OK;
+    if (o->run.json) {
+        SL_TRY(abf_trace_write(trace, "-", diag));
+    } else if (!o->run.quiet) {
+        if (trace->J != NULL && !o->step) {
+            abf_print_matrix("J (rows g1, g2, g3; columns angles)", trace->J, false);
+            abf_print_matrix("Schur complement of the last iteration (rows g2, g3)", trace->M, true);
+        }
+        abf_print_end(trace);
+    }
+    if (o->trace != NULL) {
+        SL_TRY(abf_trace_write(trace, o->trace, diag));
+    }
+    if (o->report != NULL) {
+        SL_TRY(abf_report_write(trace, o->report, diag));
+    }
+cleanup:
+    return status;
+}
+
+static sl_status solve(abf_options *o, const abf_pick *pick, const abf_constraints *constraints, bool *converged,
+                       sl_diag *diag)
+{
+    const sl_patch *patch = pick->patch;
+    sl_status status = SL_OK;
+    sl_sector_table table = {0};
+    sl_abf *solver = NULL;
+    double *phi = sl_alloc(6 * (int64_t)patch->nt, sizeof *phi), *probe = NULL;
+    abf_trace trace = {.file = o->source.file, .pick = pick, .constraints = constraints, .table = &table};
+    SL_TRY(phi != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(sl_constraints_compile(patch, constraints->count, constraints->item, pick->name, &table, diag));
+    probe = sl_calloc(2 * (int64_t)patch->nv, sizeof *probe);
+    SL_TRY(probe != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t v = 0; v < patch->nv; v++) {
+        probe[2 * (int64_t)v] = v; /* no two at one place: what is wrong with the pins alone */
+    }
+    SL_TRY(sl_pins_apply(patch, constraints->pins, constraints->pin, probe, diag));
+    o->def.sectors = &table.view;
+    trace.def = o->def;
+    SL_TRY(sl_abf_create(patch, &o->def, &solver));
+    sl_abf_targets(patch, &o->def, phi, phi + 3 * (int64_t)patch->nt);
+    trace.phi = phi;
+    trace.weight = phi + 3 * (int64_t)patch->nt;
+    SL_TRY(iterate(o, &trace, solver));
+    SL_TRY(abf_trace_close(&trace, solver));
+    SL_TRY(deliver(o, &trace, diag));
+    *converged = sl_abf_info_of(solver)->converged;
+cleanup:
+    abf_trace_clear(&trace);
+    sl_abf_free(solver);
+    sl_sectors_clear(&table);
+    sl_free(probe);
+    sl_free(phi);
+    return status;
+}
+
+static int run(abf_options *o)
+{
+    abf_pick pick = {0};
+    abf_constraints constraints = {0};
+    sl_diag diag = sl_diag_none();
+    bool converged = false;
+    int code = abf_pick_chart(&o->run, &o->source, &pick);
+    if (code == CLI_DONE) {
+        code = abf_constraints_read(&o->run, &pick, &o->asked, &constraints);
+    }
+    if (code == CLI_DONE) {
+        code = cli_fail(&o->run, solve(o, &pick, &constraints, &converged, &diag), &diag);
+        code = code == CLI_DONE && !converged ? CLI_INFEASIBLE : code;
+    }
+    abf_constraints_clear(&constraints);
+    abf_pick_clear(&pick);
+    return code;
+}
+
+int cli_abf(int argc, char **argv)
+{
+    abf_options o = {.run = {.verb = verb.name}, .source = {.chart = -1}, .def = sl_abf_default()};
+    cli_option options[OWN_OPTIONS + CLI_COMMON_OPTIONS];
+    int32_t files = 0;
+    option_table(&o, options);
+    int code = cli_parse(&verb, options, (int32_t)SL_COUNTOF(options), argc, argv, 2, &o.source.file, &files);
+    if (code >= 0) {
+        return code;
+    }
+    o.def.energy = (sl_abf_energy)o.energy;
+    o.def.wheel = (sl_abf_wheel)o.wheel;
+    o.def.newton = (sl_abf_newton)o.newton;
+    code = cli_begin(&o.run);
+    return code >= 0 ? code : cli_end(&o.run, run(&o));
+}
