@@ -13,15 +13,22 @@
  * floating-point arithmetic"; filter, then exact expansions. */
 int sl_orient2d(const double a[2], const double b[2], const double c[2]);
 
-/* The same with its first filter in the caller's loop, which decides nearly always. */
-static inline int sl_orient2d_quick(const double a[2], const double b[2], const double c[2])
+/* The sign where a filter of a few operations is sure of it, else 0: also for NaN and infinities. */
+static inline int sl_orient2d_sure(const double a[2], const double b[2], const double c[2])
 {
     const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
     const double det = left - right;
     /* A little over bound A of the source, and far above what an underflowing product can lose. Overflow and NaN make
      * both comparisons false. */
     const double bound = 0x1.8p-52 * (1.0 + 0x1p-40) * (fabs(left) + fabs(right)) + 0x1p-1000;
-    return det > bound ? 1 : det < -bound ? -1 : sl_orient2d(a, b, c);
+    return (det > bound) - (det < -bound);
+}
+
+/* sl_orient2d with that filter in the caller's loop. */
+static inline int sl_orient2d_quick(const double a[2], const double b[2], const double c[2])
+{
+    const int sign = sl_orient2d_sure(a, b, c);
+    return sign != 0 ? sign : sl_orient2d(a, b, c);
 }
 
 /* How two closed segments ab and cd meet. */

@@ -16,15 +16,27 @@ static bool finite_uv(const double *uv, int64_t n, const int32_t *vertex)
     return true;
 }
 
-static void count_orientations(const double *uv, int32_t nt, const int32_t *tri, sl_certificate *out)
+/* False if a corner is not finite: the filter is never sure of those, so nearly all corners are read once. */
+static bool count_orientations(const double *uv, int32_t nt, const int32_t *tri, sl_certificate *out)
 {
+    int32_t positive = 0, negative = 0;
     for (int32_t t = 0; t < nt; t++) {
         const int32_t *corner = tri + 3 * (int64_t)t;
-        const int sign =
-            sl_orient2d(uv + 2 * (int64_t)corner[0], uv + 2 * (int64_t)corner[1], uv + 2 * (int64_t)corner[2]);
-        out->flipped += sign < 0;
-        out->degenerate += sign == 0;
+        const double *a = uv + 2 * (int64_t)corner[0], *b = uv + 2 * (int64_t)corner[1];
+        const double *c = uv + 2 * (int64_t)corner[2];
+        int sign = sl_orient2d_sure(a, b, c);
+        if (sign == 0) {
+            if (!finite_uv(uv, 3, corner)) {
+                return false;
+            }
+            sign = sl_orient2d(a, b, c);
+        }
+        positive += sign > 0;
+        negative += sign < 0;
     }
+    out->flipped = negative;
+    out->degenerate = nt - positive - negative;
+    return true;
 }
 
 /* Border edges i and j have a common point they must not have. Two that share a vertex meet there rightly; having more
@@ -40,11 +52,15 @@ static bool edges_clash(const double *uv, const int32_t *border, int32_t i, int3
             return false;
         }
     }
-    const sl_crossing crossing = sl_segments_cross(pa, pb, pc, pd);
-    if (a == c || a == d || b == c || b == d) {
-        return crossing == SL_CROSS_OVERLAP;
+    const bool adjacent = a == c || a == d || b == c || b == d;
+    if (adjacent) { /* only edges on one line can have more in common than their vertex: nearly none are */
+        const double *own = a == c || a == d ? pb : pa, *other = c == a || c == b ? pd : pc;
+        if (sl_orient2d_sure(a == c || a == d ? pa : pb, own, other) != 0) {
+            return false;
+        }
     }
-    return crossing != SL_CROSS_NONE;
+    const sl_crossing crossing = sl_segments_cross(pa, pb, pc, pd);
+    return adjacent ? crossing == SL_CROSS_OVERLAP : crossing != SL_CROSS_NONE;
 }
 
 /* Tests edge i against the edges after it in its cells; stamp[j] = i once j was tested. */
@@ -97,11 +113,10 @@ sl_status sl_certify_embedding(const double *uv, int32_t nt, const int32_t *tri,
                                sl_certificate *out)
 {
     SL_ASSERT(nt >= 0 && nb >= 0);
-    if (!finite_uv(uv, 3 * (int64_t)nt, tri) || !finite_uv(uv, 2 * (int64_t)nb, border)) {
+    sl_certificate found = {.first_edge = {-1, -1}};
+    if (!count_orientations(uv, nt, tri, &found) || !finite_uv(uv, 2 * (int64_t)nb, border)) {
         return SL_BAD_INPUT;
     }
-    sl_certificate found = {.first_edge = {-1, -1}};
-    count_orientations(uv, nt, tri, &found);
     const sl_status status = check_border(uv, nb, border, &found);
     if (status != SL_OK) {
         return status;
