@@ -131,7 +131,7 @@ static void begin(sl_abf *solver)
 {
     solver->info = (sl_abf_info){.dependent = solver->info.dependent};
     solver->best_excess = INFINITY;
-    solver->steps_since_best = 0;
+    solver->steps_since_best = solver->history_next = 0;
     sl_abf_evaluate(solver);
     sl_abf_judge(solver);
 }

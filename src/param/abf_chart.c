@@ -6,7 +6,8 @@
 #include "base/memory.h"
 #include "param/abf_solver_internal.h"
 
-enum { MOVE_STEPS = 2, MAX_SOLVES = 60 };
+/* A solve goes on up to MAX_STEPS as long as one in PATIENCE of them makes progress. */
+enum { MOVE_STEPS = 2, MAX_SOLVES = 60, MAX_STEPS = 150, PATIENCE = 20 };
 
 static const double shortest_advance = 0x1p-10; /* of the way to the targets: below this homotopy gives up */
 
@@ -73,6 +74,20 @@ static void hold(sl_abf_chart *chart, bool valid)
     chart->info.converged = chart->solver->info.converged;
 }
 
+/* Newton steps until converged, stalled, or without hope. */
+static sl_status solve_patiently(sl_abf *solver, const sl_context *context)
+{
+    sl_status status = SL_OK;
+    const sl_abf_info *info = &solver->info;
+    while (!info->converged && !info->stalled && info->iterations < solver->def.max_iterations &&
+           solver->steps_since_best < PATIENCE) {
+        SL_TRY(sl_report_progress(context, "abf", (double)info->iterations / solver->def.max_iterations));
+        SL_TRY(sl_abf_step(solver, 1, NULL));
+    }
+cleanup:
+    return status;
+}
+
 /* A full solve for chart->theta from the present state; *good = converged and valid, and then held. */
 static sl_status try_targets(sl_abf_chart *chart, const sl_context *context, bool *good)
 {
@@ -81,7 +96,7 @@ static sl_status try_targets(sl_abf_chart *chart, const sl_context *context, boo
     bool valid = false;
     *good = false;
     SL_TRY(sl_abf_set_targets(solver, chart->theta));
-    SL_TRY(sl_abf_step(solver, solver->def.max_iterations, context));
+    SL_TRY(solve_patiently(solver, context));
     chart->info.abf = solver->info;
     chart->info.iterations += solver->info.iterations;
     chart->info.solves++;
@@ -215,7 +230,7 @@ static sl_status start_free(sl_abf_chart *chart, const sl_context *context)
     bool valid = false;
     def.sectors = NULL;
     SL_TRY(sl_abf_create(chart->patch, &def, &plain));
-    SL_TRY(sl_abf_step(plain, def.max_iterations, context));
+    SL_TRY(solve_patiently(plain, context));
     chart->info.iterations += plain->info.iterations;
     chart->info.solves++;
     if (!plain->info.converged) {
@@ -268,6 +283,7 @@ sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_def *def, cons
     }
     chart->patch = patch;
     SL_TRY(sl_abf_create(patch, def, &chart->solver));
+    chart->solver->def.max_iterations = def->max_iterations > MAX_STEPS ? def->max_iterations : MAX_STEPS;
     SL_TRY(sl_reconstruct_create(patch, &chart->layout));
     const int64_t nt = patch->nt, nv = patch->nv, count = chart->solver->sectors.count;
     chart->state = sl_calloc(4 * nt + chart->solver->system.nrows + count, sizeof *chart->state);

@@ -21,7 +21,8 @@ typedef struct sl_abf_chart_info {
 
 typedef struct sl_abf_chart sl_abf_chart; /* opaque; borrows the patch and def->sectors' corners */
 
-/* Solves for the targets of def->sectors as sl_abf_chart_release does. Where that fails from the measured angles the
+/* Solves for the targets of def->sectors as sl_abf_chart_release does, with at least 150 Newton steps for
+ * def->max_iterations as long as they make progress. Where that fails from the measured angles the
  * chart is first flattened without constraints, which gives a valid state to start from. SL_SINGULAR, SL_INFEASIBLE,
  * SL_BAD_INPUT (as sl_abf_create and sl_reconstruct_create), SL_OUT_OF_MEMORY, SL_CANCELLED. On failure *out is NULL.
  */

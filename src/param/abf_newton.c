@@ -18,8 +18,12 @@
 #include "param/abf_solver_internal.h"
 
 static const double pi = 3.14159265358979323846;
-static const double boundary_share = 0.95;  /* of the way to 0 or pi that one step may go */
-static const double shortest_step = 1e-6;   /* below this the solver has stalled */
+static const double boundary_share = 0.95; /* of the way to 0 or pi that one step may go */
+static const double shortest_step = 1e-6;  /* below this the solver has stalled */
+static const double penalty_factor = 1.1;  /* over the largest multiplier of a group */
+static const double sufficient = 1e-4;     /* of the decrease that the slope promises */
+static const double rounding = 1e-12;      /* of the merit function: less than that is no increase */
+static const int max_halvings = 6;
 static const double least_curvature = 1e-3; /* of det P's denominator without curvature: exact Newton needs this much */
 static const double progress = 0.99;        /* a residual must fall below this share of the best to count as progress */
 static const int32_t patience = 5;          /* steps without progress that show the rounding floor */
@@ -263,21 +267,92 @@ static sl_status solve_system(sl_abf *solver)
     return SL_OK;
 }
 
+/* The 1-norms of the residuals. */
+static sl_abf_merit merit_of(const sl_abf *solver)
+{
+    sl_abf_merit merit = {.energy = solver->info.energy};
+    for (int32_t t = 0; t < solver->patch->nt; t++) {
+        merit.norm[0] += fabs(solver->g1[t]);
+    }
+    for (int32_t r = 0; r < solver->system.nrows; r++) {
+        merit.norm[r < solver->system.nsectors ? 1 : 2] += fabs(solver->g[r]);
+    }
+    return merit;
+}
+
+/* Penalties that exceed every multiplier the step leads to: then it descends on the merit function. */
+static void set_penalties(const sl_abf *solver, double penalty[3])
+{
+    penalty[0] = penalty[1] = penalty[2] = 0.0;
+    for (int32_t t = 0; t < solver->patch->nt; t++) {
+        penalty[0] = fmax(penalty[0], fabs(solver->lambda1[t] + solver->dlambda1[t]));
+    }
+    for (int32_t r = 0; r < solver->system.nrows; r++) {
+        double *group = &penalty[r < solver->system.nsectors ? 1 : 2];
+        *group = fmax(*group, fabs(solver->lambda2[r] + solver->rhs[r]));
+    }
+    for (int k = 0; k < 3; k++) {
+        penalty[k] *= penalty_factor;
+    }
+}
+
+static double weigh(const sl_abf_merit *merit, const double penalty[3])
+{
+    return merit->energy + penalty[0] * merit->norm[0] + penalty[1] * merit->norm[1] + penalty[2] * merit->norm[2];
+}
+
+/* Derivative of the merit function along delta. */
+static double slope(const sl_abf *solver, const double penalty[3])
+{
+    const sl_abf_merit now = merit_of(solver);
+    double sum = 0.0;
+    for (int64_t c = 0; c < 3 * (int64_t)solver->patch->nt; c++) {
+        sum += 2.0 * solver->w[c] * (solver->alpha[c] - solver->phi[c]) * solver->delta[c];
+    }
+    return sum - (weigh(&now, penalty) - now.energy);
+}
+
+/* Goes along delta until the merit function E + sum of penalties |g| is below the largest of its last values, halving
+ * the step where it is not; the last halving is taken as it is. Source: Grippo, Lampariello, Lucidi 1986, "A
+ * nonmonotone line search technique for Newton's method"; Han 1977 for the merit function. */
+static double search_line(sl_abf *solver, double step)
+{
+    double penalty[3], reference = -INFINITY;
+    set_penalties(solver, penalty);
+    const double descent = fmin(slope(solver, penalty), 0.0);
+    solver->history[solver->history_next++ % SL_ABF_HISTORY] = merit_of(solver);
+    for (int32_t i = 0; i < SL_ABF_HISTORY && i < solver->history_next; i++) {
+        reference = fmax(reference, weigh(&solver->history[i], penalty));
+    }
+    advance(solver, step);
+    sl_abf_evaluate(solver);
+    for (int halving = 0; halving < max_halvings; halving++) {
+        const sl_abf_merit now = merit_of(solver);
+        if (weigh(&now, penalty) <= reference + sufficient * step * descent + rounding * reference) {
+            break;
+        }
+        step *= 0.5;
+        advance(solver, -step);
+        sl_abf_evaluate(solver);
+    }
+    return step;
+}
+
 sl_status sl_abf_newton_step(sl_abf *solver)
 {
     const sl_status status = solve_system(solver);
     if (status != SL_OK && status != SL_NOT_POSITIVE_DEFINITE && status != SL_BAD_INPUT) {
         return status;
     }
-    const double step = status == SL_OK ? step_length(solver) : 0.0;
-    solver->info.step = step;
+    double step = status == SL_OK ? step_length(solver) : 0.0;
     if (step < shortest_step) {
         solver->info.stalled = true;
+        sl_abf_evaluate(solver); /* solve_system may have shifted the gradient */
     } else {
-        advance(solver, step);
+        step = search_line(solver, step);
         solver->info.iterations++;
     }
-    sl_abf_evaluate(solver);
+    solver->info.step = step;
     watch_progress(solver);
     sl_abf_judge(solver);
     return SL_OK;

@@ -7,6 +7,13 @@
 #include "param/regions_internal.h"
 #include "sparse/cholesky.h"
 
+enum { SL_ABF_HISTORY = 4 }; /* values of the merit function that a new one is compared with */
+
+/* Energy and the 1-norms of g1, g2, g3. */
+typedef struct sl_abf_merit {
+    double energy, norm[3];
+} sl_abf_merit;
+
 struct sl_abf {
     const sl_patch *patch; /* borrowed */
     sl_abf_def def;
@@ -17,7 +24,9 @@ struct sl_abf {
     sl_abf_system system;
     sl_cholesky *factor;
     sl_abf_info info;
-    double best_excess;        /* the smallest max of residual / tolerance since the targets were set */
+    double best_excess; /* the smallest max of residual / tolerance since the targets were set */
+    sl_abf_merit history[SL_ABF_HISTORY];
+    int32_t history_next;      /* how many were ever put in */
     int32_t steps_since_best;  /* and how long ago that was */
     double *phi, *w, *hessian; /* 3 nt; hessian = Lambda of the last step */
     double *alpha, *lambda1;   /* 3 nt, nt */
