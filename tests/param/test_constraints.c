@@ -1,6 +1,7 @@
 /* Constraints on flat charts: the sectors they make, the layouts they lead to, what cannot be. */
 #include "param/constraints.h"
 
+#include "base/memory.h"
 #include "param/abf_charts.h"
 
 #define PI TEST_PI
@@ -281,36 +282,81 @@ static void right_angles_can_be_asked_for_where_lines_end(void **state)
     sl_patch_free(patch);
 }
 
-/* Random shortest paths between border vertices, one at a time, on jittered charts. */
+/* Shortest path inside the chart between two of its vertices, breadth first; its length. */
+static int32_t shortest_path(const sl_patch *patch, int32_t from, int32_t to, int32_t *path)
+{
+    int32_t queue[400], parent[400], n = 0, head = 0, tail = 0;
+    assert_true(patch->nv <= 400);
+    memset(parent, -1, sizeof parent);
+    queue[tail++] = from;
+    parent[from] = from;
+    while (head < tail) {
+        const int32_t v = queue[head++];
+        int32_t c = patch->outgoing[v];
+        do {
+            const int32_t near[2] = {patch->tri[sl_corner_next(c)], patch->tri[sl_corner_prev(c)]};
+            for (int k = 0; k < 2; k++) {
+                if (parent[near[k]] < 0 && (patch->border[near[k]] == 0 || near[k] == to)) {
+                    parent[near[k]] = v;
+                    queue[tail++] = near[k];
+                }
+            }
+            c = sl_corner_rotate(patch, c);
+        } while (c >= 0 && c != patch->outgoing[v]);
+    }
+    for (int32_t v = to; n == 0 || path[n - 1] != from; v = parent[v]) {
+        path[n++] = v;
+    }
+    return n;
+}
+
+/* Bumps so steep that undamped steps, at this seed, run in circles among small angles. */
+static void crossing_lines_on_a_steep_chart_take_the_line_search(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(44);
+    sl_patch *patch = chart_hexagon(9, 0.45, chart_bumps, 3.0, 44);
+    int32_t *first, *halfedge, path[2][100], n[2];
+    assert_int_equal(sl_patch_border(patch, &first, &halfedge), SL_OK);
+    const int32_t nb = first[1], at = test_index(&rng, nb);
+    for (int k = 0; k < 2; k++) {
+        const int32_t from = halfedge[(at + k * (nb / 4)) % nb], to = halfedge[(at + k * (nb / 4) + nb / 2) % nb];
+        n[k] = shortest_path(patch, patch->tri[from], patch->tri[to], path[k]);
+    }
+    const sl_constraint list[] = {{SL_CONSTRAINT_STRAIGHT, n[0], path[0], 0.0},
+                                  {SL_CONSTRAINT_STRAIGHT, n[1], path[1], 0.0}};
+    sl_sector_table table = compile(patch, 2, list);
+    sl_abf_def def = sl_abf_default();
+    def.sectors = &table.view;
+    def.max_iterations = 80;
+    sl_abf *solver;
+    assert_int_equal(sl_abf_create(patch, &def, &solver), SL_OK);
+    int32_t damped = 0;
+    while (!sl_abf_info_of(solver)->converged && sl_abf_info_of(solver)->iterations < 80) {
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        damped += sl_abf_info_of(solver)->step < 1.0;
+    }
+    assert_true(sl_abf_info_of(solver)->converged && sl_abf_info_of(solver)->gradient <= 1e-6 && damped > 0);
+    sl_abf_free(solver);
+    sl_sectors_clear(&table);
+    sl_free(first);
+    sl_free(halfedge);
+    sl_patch_free(patch);
+}
+
+/* Random shortest paths from border vertices, one at a time, on jittered charts. */
 static void random_paths_become_straight(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0xc7);
     for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
         sl_patch *patch = chart_hexagon(6, 0.15, chart_bumps, 0.6, 0xc70 + (uint64_t)trial);
-        int32_t from, to, queue[200], parent[200], path[200], n = 0, head = 0, tail = 0;
+        int32_t from, to, path[200];
         do {
             from = test_index(&rng, patch->nv);
             to = test_index(&rng, patch->nv);
         } while (patch->border[from] == 0 || from == to);
-        memset(parent, -1, sizeof parent);
-        queue[tail++] = from;
-        parent[from] = from;
-        while (head < tail) { /* breadth first over the edges */
-            const int32_t v = queue[head++];
-            for (int32_t c = 0; c < 3 * patch->nt; c++) {
-                for (int k = 1; k < 3; k++) {
-                    const int32_t w = patch->tri[c / 3 * 3 + (c + k) % 3];
-                    if (patch->tri[c] == v && parent[w] < 0 && (patch->border[w] == 0 || w == to)) {
-                        parent[w] = v;
-                        queue[tail++] = w;
-                    }
-                }
-            }
-        }
-        for (int32_t v = to; n == 0 || path[n - 1] != from; v = parent[v]) {
-            path[n++] = v;
-        }
+        const int32_t n = shortest_path(patch, from, to, path);
         if (n > 2) {
             const sl_constraint list[] = {{SL_CONSTRAINT_STRAIGHT, n, path, 0.0}};
             check_solution(patch, 1, list, 1e-9);
@@ -502,6 +548,7 @@ int main(void)
         cmocka_unit_test(angles_and_right_angles_on_the_border_are_met),
         cmocka_unit_test(right_angles_can_be_asked_for_where_lines_end),
         cmocka_unit_test(random_paths_become_straight),
+        cmocka_unit_test(crossing_lines_on_a_steep_chart_take_the_line_search),
         cmocka_unit_test(what_cannot_be_is_refused_with_its_vertices_named),
         cmocka_unit_test(a_sector_with_too_few_triangles_is_refused),
         cmocka_unit_test(what_is_left_for_free_angles_must_be_an_angle),
