@@ -19,6 +19,7 @@ static const verb_entry verbs[] = {
     {"spectrum", cli_spectrum, "eigenvectors of the facet graph and the cuts they propose"},
     {"abf", cli_abf, "one chart flattened an iteration at a time, with angles and lines as you ask"},
     {"theorem", cli_theorem, "the symmetric-graph theorem, checked on random graphs and meshes; TAP for CI"},
+    {"render", cli_render, "pictures: in space and in UV space, seams, charts, overlap, stretch, eigenvectors"},
     {"demo", cli_demo, "the whole way on a generated mesh, with pictures"},
 };
 

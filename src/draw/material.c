@@ -165,14 +165,30 @@ double sl_checkerboard(const double uv[2], const double width[2])
     return 0.5 + 0.5 * mean[0] * mean[1];
 }
 
+/* A vector of UV: its value at the hit, its change to the right and below. */
+static void uv_footprint(const sl_material *m, const sl_hit *hit, const int32_t corner[3], double scale, double at[2],
+                         double right[2], double below[2])
+{
+    for (int k = 0; k < 2; k++) {
+        at[k] = scale * interpolate(m->uv, 2, k, corner, hit->bary);
+        right[k] = scale * interpolate(m->uv, 2, k, corner, hit->right) - at[k];
+        below[k] = scale * interpolate(m->uv, 2, k, corner, hit->below) - at[k];
+    }
+}
+
+static void map_texture(const sl_material *m, const sl_hit *hit, const int32_t corner[3], float rgb[3])
+{
+    double at[2], right[2], below[2];
+    uv_footprint(m, hit, corner, m->tiles, at, right, below);
+    sl_texture_sample(m->texture, at, right, below, rgb);
+}
+
 static float check_factor(const sl_material *m, const sl_hit *hit, const int32_t corner[3])
 {
-    double at[2], width[2];
+    double at[2], right[2], below[2], width[2];
+    uv_footprint(m, hit, corner, m->checks, at, right, below);
     for (int k = 0; k < 2; k++) {
-        at[k] = m->checks * interpolate(m->uv, 2, k, corner, hit->bary);
-        const double dx = m->checks * interpolate(m->uv, 2, k, corner, hit->right) - at[k];
-        const double dy = m->checks * interpolate(m->uv, 2, k, corner, hit->below) - at[k];
-        width[k] = fmax(fabs(dx), fabs(dy));
+        width[k] = fmax(fabs(right[k]), fabs(below[k]));
     }
     if (!isfinite(at[0] + at[1] + width[0] + width[1]) || fabs(at[0]) > 1e9 || fabs(at[1]) > 1e9) {
         return 1.0f;
@@ -185,13 +201,16 @@ void sl_hit_color(const sl_material *m, const sl_hit *hit, float rgb[3])
     const int32_t *corner = m->corner + 3 * (int64_t)hit->triangle;
     const int64_t facet = m->facet != NULL ? m->facet[hit->triangle] : hit->triangle;
     memcpy(rgb, m->facet_rgb != NULL ? m->facet_rgb + 3 * facet : m->base_rgb, 3 * sizeof *rgb);
+    if (m->uv != NULL && m->texture != NULL && m->value == NULL) {
+        map_texture(m, hit, corner, rgb);
+    }
     if (m->value != NULL) {
         map_value(m, hit, corner, rgb);
     }
     if (m->flag != NULL && m->flag[facet] != 0) {
         memcpy(rgb, m->flag_rgb, sizeof m->flag_rgb);
     }
-    if (m->uv != NULL) {
+    if (m->uv != NULL && m->checks > 0.0) {
         const float factor = check_factor(m, hit, corner);
         for (int k = 0; k < 3; k++) {
             rgb[k] *= factor;

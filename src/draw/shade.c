@@ -14,6 +14,7 @@ sl_material sl_material_default(void)
                          .missing_rgb = {0.35f, 0.35f, 0.35f},
                          .contour = (double)NAN,
                          .checks = 32.0,
+                         .tiles = 1.0,
                          .check_shade = 0.68f,
                          .flag_rgb = {0.80f, 0.02f, 0.02f},
                          .back_rgb = {0.20f, 0.21f, 0.24f},

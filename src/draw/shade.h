@@ -5,6 +5,7 @@
 
 #include "draw/ground.h"
 #include "draw/light.h"
+#include "draw/texture.h"
 #include "draw/visibility.h"
 
 /* What the triangles look like. All arrays are borrowed. A corner is an entry of the per-corner arrays; corner[3 t + k]
@@ -20,11 +21,13 @@ typedef struct sl_material {
     const float *map_rgb;      /* 3 map_count */
     int32_t map_count;         /* >= 2 where value is given */
     float missing_rgb[3];
-    double contour;      /* value of a contour line drawn dark; NaN = none */
-    const double *uv;    /* 2 a corner; NULL = no checkerboard; NaN = none on that triangle */
-    double checks;       /* squares of the checkerboard per unit of UV */
-    float check_shade;   /* colours of dark squares are multiplied by this */
-    const uint8_t *flag; /* 1 a facet: nonzero = flag_rgb; NULL = none */
+    double contour;            /* value of a contour line drawn dark; NaN = none */
+    const double *uv;          /* 2 a corner; NULL = no checkerboard and no texture; NaN = none on that triangle */
+    double checks;             /* squares of the checkerboard per unit of UV; 0 = no checkerboard */
+    float check_shade;         /* colours of dark squares are multiplied by this */
+    const sl_texture *texture; /* in place of a facet's colour, where there is no value; borrowed; NULL = none */
+    double tiles;              /* how often the texture fits into a unit of UV */
+    const uint8_t *flag;       /* 1 a facet: nonzero = flag_rgb; NULL = none */
     float flag_rgb[3];
     float back_rgb[3]; /* mixed half into back sides */
     bool lit;          /* false: colours as they are (UV space) */

@@ -72,6 +72,14 @@ static sl_status index_triangles(const sl_scene *s, sl_dressing *d)
     return SL_OK;
 }
 
+/* The light that each byte of a picture stands for. */
+static void byte_table(float linear[256])
+{
+    for (int i = 0; i < 256; i++) {
+        linear[i] = (float)sl_srgb_to_linear(i / 255.0);
+    }
+}
+
 static sl_status color_facets(const sl_scene *s, sl_dressing *d)
 {
     if (s->facet_rgb == NULL && s->chart == NULL) {
@@ -94,9 +102,7 @@ static sl_status color_facets(const sl_scene *s, sl_dressing *d)
         goto cleanup;
     }
     float linear[256];
-    for (int i = 0; i < 256; i++) {
-        linear[i] = (float)sl_srgb_to_linear(i / 255.0);
-    }
+    byte_table(linear);
     for (int64_t i = 0; i < 3 * (int64_t)s->mesh->nf; i++) {
         d->facet_rgb[i] = linear[from[i]];
     }
@@ -145,6 +151,17 @@ static sl_status set_values(const sl_scene *s, sl_dressing *d)
     return SL_OK;
 }
 
+static sl_status make_texture(const sl_scene *s, sl_dressing *d)
+{
+    float linear[256];
+    if (s->texture == NULL || s->corner_uv == NULL) {
+        return SL_OK;
+    }
+    byte_table(linear);
+    return sl_texture_create(s->texture->width, s->texture->height, s->texture->channels, s->texture->pixels, linear,
+                             &d->texture);
+}
+
 static double crease_degrees(int32_t facets)
 {
     const double t = fmin(log(fmax(facets / coarse_facets, 1.0)) / log(dense_facets / coarse_facets), 1.0);
@@ -158,6 +175,7 @@ sl_status sl_dress(const sl_scene *scene, bool smooth, sl_dressing *dressing)
     SL_TRY(index_triangles(scene, dressing));
     SL_TRY(color_facets(scene, dressing));
     SL_TRY(set_values(scene, dressing));
+    SL_TRY(make_texture(scene, dressing));
     SL_TRY(collect_seams(scene, dressing));
     if (smooth) {
         dressing->normal = sl_alloc(scene->mesh->nh, 3 * sizeof *dressing->normal);
@@ -180,6 +198,7 @@ void sl_undress(sl_dressing *d)
     sl_free(d->triangle_facet);
     sl_free(d->normal);
     sl_free(d->facet_rgb);
+    sl_texture_free(d->texture);
     sl_free(d->value);
     sl_free(d->seam);
     *d = (sl_dressing){0};
@@ -198,8 +217,10 @@ sl_material sl_dressed_material(const sl_scene *scene, const sl_dressing *d)
     m.map_rgb = d->map_rgb;
     m.map_count = SL_MAP_COLORS;
     m.contour = scene->zero_line && scene->corner_value != NULL ? 0.0 : (double)NAN;
-    m.uv = scene->checker ? scene->corner_uv : NULL;
-    m.checks = scene->checks;
+    m.uv = scene->checker || d->texture != NULL ? scene->corner_uv : NULL;
+    m.checks = scene->checker ? scene->checks : 0.0;
+    m.texture = d->texture;
+    m.tiles = scene->tiles;
     m.flag = scene->facet_flag;
     return m;
 }

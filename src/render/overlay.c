@@ -126,7 +126,8 @@ sl_status sl_overlay_legend(sl_canvas *canvas, const sl_dressing *dressing, cons
     sl_mask_text(&overlay->mask, at_lo, height, lo);
     sl_mask_text(&overlay->mask, at_hi, height, hi);
     if (name != NULL) {
-        const double at_name[2] = {0.5 * (x0 + x1 - sl_text_width(height, name)), y0 - 0.8 * height};
+        const double wide = sl_text_width(height, name), last = canvas->width - height - wide;
+        const double at_name[2] = {fmax(fmin(0.5 * (x0 + x1 - wide), last), height), y0 - 0.8 * height};
         sl_mask_text(&overlay->mask, at_name, height, name);
     }
     sl_overlay_blend(overlay, ink_rgb, 1.0f);

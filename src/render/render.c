@@ -75,11 +75,11 @@ static sl_status render_panel(const sl_scene *scene, const sl_view *view, const 
     if (part.width == 0) {
         return SL_OK;
     }
-    if (panel == 1 && panels == 3) { /* the other side, without repeating title and colour bar */
+    if (panel == 1 && panels == 3) { /* the other side, without repeating the title */
         from.azimuth += 180.0;
         part.title = NULL;
-        part.legend = false;
     }
+    part.legend = part.legend && panel == 0; /* one is enough */
     const sl_status status = panel == panels - 1 ? sl_render_uv(scene, &part, context, &image, diag)
                                                  : sl_render_3d(scene, &from, &part, context, &image, diag);
     if (status == SL_OK) {

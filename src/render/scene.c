@@ -10,7 +10,8 @@ static const double max_pixels_wide = 1e4;
 
 sl_scene sl_scene_default(void)
 {
-    return (sl_scene){.map = SL_COLORMAP_SEQUENTIAL, .checker = true, .checks = 64.0, .seams = true, .seam_width = 2.0};
+    return (sl_scene){
+        .map = SL_COLORMAP_SEQUENTIAL, .tiles = 1.0, .checker = true, .checks = 64.0, .seams = true, .seam_width = 2.0};
 }
 
 sl_picture sl_picture_default(void)
@@ -85,6 +86,12 @@ sl_status sl_scene_check(const sl_scene *s, const sl_picture *picture, sl_diag *
     const sl_status status = check_picture(picture, diag);
     if (status != SL_OK) {
         return status;
+    }
+    if (!in_range(s->tiles, 0x1p-20, max_checks)) {
+        return refuse(diag, -1, "tiles is out of range");
+    }
+    if (s->texture != NULL && (s->texture->width > SL_TEXTURE_MAX_SIDE || s->texture->height > SL_TEXTURE_MAX_SIDE)) {
+        return refuse(diag, -1, "a texture's side must be at most 8192 texels");
     }
     if (!in_range(s->checks, 0x1p-20, max_checks) || !in_range(s->seam_width, 0.0, max_pixels_wide) ||
         !in_range(s->wire, 0.0, 1.0)) {

@@ -25,7 +25,7 @@ typedef struct sl_dot_layer {
 } sl_dot_layer;
 
 /* All arrays are borrowed and, but for mesh and triangulation, nullable. A facet's colour is, by precedence: flagged
- * (red), corner_value, facet_value, facet_rgb, chart, plain grey. */
+ * (red), corner_value, facet_value, texture, facet_rgb, chart, plain grey. */
 typedef struct sl_scene {
     const sl_mesh *mesh;
     const sl_triangulation *triangulation;
@@ -39,6 +39,8 @@ typedef struct sl_scene {
                                    about 0 for SL_COLORMAP_DIVERGING */
     bool zero_line;             /* corner_value: a dark line where it changes sign; default false */
     const uint8_t *facet_flag;  /* nf; nonzero = drawn red (overlap) */
+    const sl_image *texture;    /* laid through corner_uv in place of facets' colours; sides at most 8192 */
+    double tiles;               /* how often it fits into a unit of UV, (0, 1e6]; default 1 */
     bool checker;               /* checkerboard through corner_uv; default true */
     double checks;              /* its squares per unit of UV, (0, 1e6]; default 64 */
     bool seams;                 /* draw edges where corner_uv or chart change, or that are cut; default true */

@@ -20,6 +20,7 @@ typedef struct sl_dressing {
     int32_t *triangle_facet;  /* nt */
     float *normal;            /* 3 nh, or NULL */
     float *facet_rgb;         /* 3 nf, or NULL */
+    sl_texture *texture;      /* or NULL */
     double *value;            /* nh, or NULL */
     double value_lo, value_hi;
     float map_rgb[3 * SL_MAP_COLORS];

@@ -50,16 +50,18 @@ static uv_window find_window(const sl_scene *scene)
     return (uv_window){lo[0], lo[1], hi[0] - lo[0], hi[1] - lo[1]};
 }
 
-/* A camera that shows the window with a margin, centred under a title that takes `room` of the height. box: left, top,
- * right, bottom of the window in pixels. */
-static sl_camera frame_window(const uv_window *win, int32_t width, int32_t height, double room, double box[4])
+/* A camera that shows the window with a margin, centred between a title and a colour bar that take `top` and `bottom`
+ * of the height. box: left, top, right, bottom of the window in pixels. */
+static sl_camera frame_window(const uv_window *win, int32_t width, int32_t height, double top, double bottom,
+                              double box[4])
 {
     const double aspect = (double)width / height, shorter = width < height ? width : height;
-    const double usable_w = width - 2.0 * margin * shorter, usable_h = height * (1.0 - room) - 2.0 * margin * shorter;
+    const double usable_w = width - 2.0 * margin * shorter,
+                 usable_h = height * (1.0 - top - bottom) - 2.0 * margin * shorter;
     const double per_pixel = fmax(win->wide / usable_w, win->high / usable_h);
     const double span = per_pixel * height;
     const double x0 = win->x0 + 0.5 * win->wide - 0.5 * span * aspect,
-                 y0 = win->y0 + 0.5 * win->high - 0.5 * (1.0 - room) * span;
+                 y0 = win->y0 + 0.5 * win->high - (bottom + 0.5 * (1.0 - top - bottom)) * span;
     box[0] = (win->x0 - x0) / per_pixel;
     box[1] = height - (win->y0 + win->high - y0) / per_pixel;
     box[2] = box[0] + win->wide / per_pixel;
@@ -132,8 +134,10 @@ sl_status sl_view_uv(const sl_scene *scene, const sl_picture *picture, const sl_
     sl_status status = SL_OK;
     const uv_window window = find_window(scene);
     double box[4];
+    const bool legend = picture->legend && dressing->value != NULL;
     const sl_camera camera =
-        frame_window(&window, picture->width, picture->height, sl_title_room(canvas, picture->uv_title), box);
+        frame_window(&window, picture->width, picture->height, sl_title_room(canvas, picture->uv_title),
+                     legend ? sl_legend_room(canvas) : 0.0, box);
     double *xyz = lift_corners(scene);
     if (xyz == NULL) {
         return SL_OUT_OF_MEMORY;
@@ -141,6 +145,9 @@ sl_status sl_view_uv(const sl_scene *scene, const sl_picture *picture, const sl_
     SL_TRY(draw_charts(scene, picture, dressing, &camera, xyz, context, canvas));
     SL_TRY(draw_frame(picture, box, canvas));
     SL_TRY(sl_overlay_title(canvas, picture->uv_title));
+    if (legend) {
+        SL_TRY(sl_overlay_legend(canvas, dressing, picture->value_name));
+    }
 cleanup:
     sl_free(xyz);
     return status;

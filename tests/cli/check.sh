@@ -52,7 +52,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure segment spectrum abf theorem demo; do
+for verb in unwrap check measure segment spectrum abf render theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -73,6 +73,31 @@ for f in hand.obj hand.atlas.json both.png model.png atlas.png; do [ -s demo/$f 
 [ ! -s out.txt ] && [ ! -s err.txt ] || complain "--quiet was not"
 head -c 8 demo/both.png | od -An -tx1 | grep -q '89 50 4e 47 0d 0a 1a 0a' || complain "both.png is no PNG"
 mesh=demo/hand.obj
+
+# --- pictures
+is_jpeg() { head -c 3 "$1" | od -An -tx1 | grep -q 'ff d8 ff'; }
+expect 0 "$seamlab" render $mesh -o atlas.png --size 160x80 --quiet
+[ -s atlas.png ] || complain "render wrote no picture"
+expect 0 "$seamlab" render $mesh -o atlas2.png --size 160x80 --quiet --threads 3
+cmp -s atlas.png atlas2.png || complain "a picture depends on the number of threads"
+expect 0 "$seamlab" render $mesh -o model.jpg --view 3d --camera front --size 120x90 --show seams,stretch --quiet
+is_jpeg model.jpg || complain "model.jpg is no JPEG"
+expect 0 "$seamlab" render $mesh -o uv.png --view uv --size 90x90 --show overlap,checker --quiet
+expect 0 "$seamlab" render $mesh -o vector.png --view 3d --size 90x90 --show eigenvector=2 --quiet
+expect 0 "$seamlab" render $mesh -o mirror.png --view 3d --size 90x90 --show symmetry --quiet
+expect 0 "$seamlab" render $mesh -o cloth.png --size 120x60 --texture model.jpg --tiles 3 --quiet
+expect 2 "$seamlab" render $mesh
+expect 2 "$seamlab" render $mesh -o no.gif
+expect 2 "$seamlab" render $mesh -o no.png --size 0x9
+expect 2 "$seamlab" render $mesh -o no.png --camera up
+expect 2 "$seamlab" render $mesh -o no.png --show seams,glitter
+contains err.txt glitter
+expect 2 "$seamlab" render $mesh -o no.png --show stretch,charts
+expect 2 "$seamlab" render $mesh -o no.png --show constraints
+expect 3 "$seamlab" render $mesh -o no.png --texture no-such-picture.png
+expect 3 "$seamlab" render no-such-mesh.obj -o no.png
+expect 1 "$seamlab" render $mesh -o no/folder/no.png --size 20x10
+no_file no.gif no.png
 
 # --- unwrap: same bytes for any number of threads and over runs; sidecar beside it
 for n in 1 2 5; do
