@@ -201,9 +201,9 @@ static void print_table(const spectrum_work *w)
 static void print_summary(const spectrum_work *w, cli_run *run)
 {
     const sl_lanczos_info *info = &w->spectrum->info;
-    cli_note(run, "%d pairs, %s, largest residual %.2e, %d solves", w->spectrum->count,
+    cli_note(run, "%d pairs, %s, largest residual %.2e, %d solves, %.1f MB estimated", w->spectrum->count,
              info->certified ? "certified complete by inertia counts" : "not certified complete", info->max_residual,
-             info->solves + info->skeleton_solves);
+             info->solves + info->skeleton_solves, megabytes(w->spectrum->memory));
 }
 
 static void print_json(const spectrum_work *w)
@@ -232,9 +232,8 @@ static void print_json(const spectrum_work *w)
     if (w->spectrum->bands.bands > 0) {
         json_object_set_new(j, "bands", json_integer(w->spectrum->bands.bands));
         json_object_set_new(j, "factors", json_integer(w->spectrum->bands.factors));
-    } else {
-        json_object_set_new(j, "memory_estimate", json_integer(w->spectrum->memory));
     }
+    json_object_set_new(j, "memory_estimate", json_integer(w->spectrum->memory));
     json_dumpf(j, stdout, JSON_COMPACT | JSON_REAL_PRECISION(15));
     putchar('\n');
     json_decref(j);

@@ -23,14 +23,16 @@ typedef struct sl_band_info {
     int32_t counts;      /* inertia counts */
     int64_t solves;      /* right-hand sides */
     double max_residual; /* largest ||A v - lambda v|| / ||A||_1 */
+    int64_t memory;      /* bytes estimated before allocating, those of A and the results not included */
 } sl_band_info;
 
 /* The def->count smallest pairs of A as in sl_lanczos_solve: lambda, vectors (n x count) and residual (nullable) are
  * the caller's; only the first info->found are filled. The first band is sl_lanczos_solve's; each later one runs block
  * Lanczos with inv(A - s I), L D L' without pivoting, s moved on by half a band, until it has all pairs that the
- * inertia counts at its ends demand. A band that does not come to its end ends the run: see info. SL_BAD_INPUT,
- * SL_OUT_OF_MEMORY, SL_LIMIT, SL_CANCELLED, SL_INTERNAL, SL_NOT_POSITIVE_DEFINITE as there. Same bytes for any number
- * of threads. Source: Vallet, Levy 2008, Sec. 4 (bands). Deviations: inertia counts instead of a search for overlaps.
+ * inertia counts at its ends demand, none nearer to an end than residuals and the counts' errors leave room for. A band
+ * that does not come to its end ends the run: see info. SL_BAD_INPUT, SL_OUT_OF_MEMORY, SL_LIMIT, SL_CANCELLED,
+ * SL_INTERNAL, SL_NOT_POSITIVE_DEFINITE as there. Same bytes for any number of threads. Source: Vallet, Levy 2008, Sec.
+ * 4 (bands). Deviations: inertia counts instead of a search for overlaps.
  */
 SL_NODISCARD sl_status sl_lanczos_bands(const sl_csc *A, const sl_band_def *def, const sl_context *context,
                                         double *lambda, double *vectors, double *residual, sl_band_info *info);

@@ -108,6 +108,7 @@ static sl_status factor_shifted(sl_lanczos *s)
     sl_status status = SL_OK;
     options.xyz = s->def.xyz;
     options.perm = s->def.perm;
+    options.context = s->context;
     options.patch = s->info.patch;
     SL_TRY(sl_report_progress(s->context, "ordering", 0.0));
     SL_TRY(sl_cholesky_analyze(s->A, &options, &s->factor));

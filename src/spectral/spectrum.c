@@ -106,7 +106,8 @@ static sl_status solve_bands(const sl_csc *A, const sl_lanczos_def *solver, cons
                                 .certified = s->bands.certified,
                                 .counts = s->bands.counts,
                                 .solves = (int32_t)(s->bands.solves < INT32_MAX ? s->bands.solves : INT32_MAX),
-                                .max_residual = s->bands.max_residual};
+                                .max_residual = s->bands.max_residual,
+                                .memory = s->bands.memory};
 cleanup:
     return status;
 }

@@ -12,6 +12,7 @@ enum { BENCH_MAX_PAIRS = 1000, BENCH_MAX_PHASES = 4, BENCH_MAX_RUNS = 100, BENCH
 
 /* Command line. */
 typedef struct bench_options {
+    int64_t min_facets; /* of the generated series; default 0 */
     int64_t max_facets; /* default 300000 */
     int32_t runs;       /* default 3 */
     int32_t pairs;      /* default 30 */

@@ -6,10 +6,11 @@
 
 static void usage(const char *name)
 {
-    fprintf(stderr,
-            "usage: %s [--max-facets N] [--mesh FILE]... [--generated] [--runs R] [--pairs K] [--signs]\n"
-            "       [--only NAME,NAME] [--all] [--basis N] [--timeout S] [--csv FILE]\n",
-            name);
+    fprintf(
+        stderr,
+        "usage: %s [--min-facets N] [--max-facets N] [--mesh FILE]... [--generated] [--runs R] [--pairs K] [--signs]\n"
+        "       [--only NAME,NAME] [--all] [--basis N] [--timeout S] [--csv FILE]\n",
+        name);
 }
 
 static bool read_number(const char *text, int64_t least, int64_t most, int64_t *out)
@@ -29,7 +30,9 @@ static bool set_number(bench_options *o, const char *key, const char *text)
     if (!read_number(text, 1, INT32_MAX, &value)) {
         return false;
     }
-    if (strcmp(key, "--max-facets") == 0) {
+    if (strcmp(key, "--min-facets") == 0) {
+        o->min_facets = value;
+    } else if (strcmp(key, "--max-facets") == 0) {
         o->max_facets = value;
     } else if (strcmp(key, "--runs") == 0 && value <= BENCH_MAX_RUNS) {
         o->runs = (int32_t)value;
@@ -92,15 +95,19 @@ bool bench_wanted(const bench_options *options, const char *name)
 }
 
 /* The generated series starts at two sizes: 7k, and what subdivides to 70k, 280k, 1.1M and 4.4M. A mesh given is
- * subdivided until the builder of the matrix says that it is too large. */
+ * subdivided, whatever the least size, until the builder of the matrix says that it is too large. */
 int32_t bench_list_cases(const bench_options *options, bench_case *cases, int32_t capacity)
 {
     int32_t count = 0;
     if (options->generated) {
-        cases[count++] = (bench_case){"generated", NULL, 7000, 0, options->max_facets};
         int64_t size = 4400 * 16;
+        if (options->min_facets <= 7000) {
+            cases[count++] = (bench_case){"generated", NULL, 7000, 0, options->max_facets};
+        }
         for (int32_t level = 2; size <= options->max_facets && count < capacity; level++, size *= 4) {
-            cases[count++] = (bench_case){"generated", NULL, 4400, level, INT32_MAX};
+            if (size >= options->min_facets) {
+                cases[count++] = (bench_case){"generated", NULL, 4400, level, INT32_MAX};
+            }
         }
     }
     for (int32_t m = 0; m < options->meshes; m++) {

@@ -50,6 +50,40 @@ static void bands_hold_every_copy_of_multiple_values(void **state)
     expect_bands(path_laplacian(600, true), path_spectrum(600, true), 101, 24);
 }
 
+/* The facet graph of an icosphere has values of multiplicity 3, 4 and 5 at every turn: 201 pairs of 20,480 against
+ * those found at once. */
+static void bands_find_what_one_run_finds(void **state)
+{
+    (void)state;
+    sl_csc *A = icosphere_facet_laplacian(5);
+    sl_band_def def = sl_band_default();
+    double *ones = constant_vector(A->ncols);
+    def.count = 201;
+    def.first.count = def.count;
+    def.first.null_space = ones;
+    def.first.null_count = 1;
+    pairs whole = pairs_of(A, &def.first), p = {.n = A->ncols, .count = def.count};
+    sl_band_info info;
+    p.lambda = sl_alloc(p.count, sizeof *p.lambda);
+    p.residual = sl_alloc(p.count, sizeof *p.residual);
+    p.vectors = sl_alloc((int64_t)p.n * p.count, sizeof *p.vectors);
+    assert_true(p.lambda && p.residual && p.vectors && whole.info.certified);
+    assert_int_equal(sl_lanczos_bands(A, &def, NULL, p.lambda, p.vectors, p.residual, &info), SL_OK);
+    assert_true(info.converged && info.certified && info.found == def.count && info.bands >= 4);
+    for (int32_t k = 0; k < p.count; k++) {
+        assert_true(test_near(p.lambda[k], whole.lambda[k], 1e-11));
+    }
+    p.info.converged = true;
+    p.info.converged_count = p.count;
+    p.info.max_residual = info.max_residual;
+    assert_residuals(A, &p, def.first.tolerance);
+    assert_orthonormal(&p, 1e-5);
+    pairs_clear(&p);
+    pairs_clear(&whole);
+    sl_free(ones);
+    sl_csc_free(A);
+}
+
 static bool refuse(void *user, const char *stage, double fraction)
 {
     int32_t *calls = user;
@@ -75,6 +109,13 @@ static void bands_refuse_and_may_be_cancelled(void **state)
     def.first.memory_limit = 1000;
     assert_int_equal(sl_lanczos_bands(A, &def, NULL, lambda, vectors, NULL, NULL), SL_LIMIT);
     def.first.memory_limit = 0;
+    sl_band_info info;
+    assert_int_equal(sl_lanczos_bands(A, &def, NULL, lambda, vectors, NULL, &info), SL_OK);
+    def.first.memory_limit = info.memory;
+    assert_int_equal(sl_lanczos_bands(A, &def, NULL, lambda, vectors, NULL, NULL), SL_OK);
+    def.first.memory_limit = info.memory - 1;
+    assert_int_equal(sl_lanczos_bands(A, &def, NULL, lambda, vectors, NULL, NULL), SL_LIMIT);
+    def.first.memory_limit = 0;
     sl_status status = SL_CANCELLED;
     int32_t limit = 1;
     for (; status == SL_CANCELLED && limit < 2000; limit += 7) {
@@ -95,6 +136,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_hold_every_value_of_closed_spectra),
         cmocka_unit_test(bands_hold_every_copy_of_multiple_values),
+        cmocka_unit_test(bands_find_what_one_run_finds),
         cmocka_unit_test(bands_refuse_and_may_be_cancelled),
     };
     return cmocka_run_group_tests(tests, one_blas_thread, NULL);
