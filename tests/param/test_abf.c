@@ -231,6 +231,7 @@ static void a_row_that_repeats_another_is_left_out_or_refused(void **state)
         sl_abf *solver = solve(patch, &def);
         const sl_abf_info *info = sl_abf_info_of(solver);
         assert_true(info->converged && !info->stalled && info->dependent == 1 && info->g2 <= 1e-14);
+        assert_true(sl_abf_view_of(solver).lambda2[0] == 0.0 && info->iterations > 2);
         assert_int_equal(sl_abf_set_targets(solver, (double[]){PI + 1e-6, 2.3}), SL_INFEASIBLE);
         assert_int_equal(sl_abf_set_targets(solver, (double[]){NAN, 2.3}), SL_BAD_INPUT);
         assert_true(info->converged); /* unchanged */

@@ -473,6 +473,71 @@ static void what_is_left_for_free_angles_must_be_an_angle(void **state)
     sl_patch_free(patch);
 }
 
+/* Two triangles, five of six corners prescribed: the sixth, a whole angle of a triangle, would have to be too large. */
+static void one_free_angle_cannot_hold_more_than_a_half_turn(void **state)
+{
+    (void)state;
+    static const double xyz[] = {0.1, 0.2, 0.3, 1.3, 0.1, 0.2, 0.6, 0.9, 0.4, 1.7, 1.1, 0.1};
+    static const int32_t tri[] = {0, 1, 2, 2, 1, 3};
+    sl_patch *patch = chart_make(4, xyz, 2, tri);
+    int32_t v[4], n = 0;
+    for (int32_t i = 0; i < 4; i++) { /* the tip at last */
+        const bool tip = chart_max_diff(&patch->xyz[3 * i], &xyz[9], 3) == 0.0;
+        v[tip ? 3 : n++] = i;
+    }
+    sl_constraint list[3];
+    for (int32_t i = 0; i < 3; i++) {
+        list[i] = (sl_constraint){SL_CONSTRAINT_ANGLE, 1, &v[i], 0.9 + 0.1 * i};
+    }
+    refused(patch, 3, list, SL_INFEASIBLE, "leave 188.");
+    list[0].angle = 1.5;
+    check_solution(patch, 3, list, 1e-9);
+    sl_patch_free(patch);
+}
+
+/* A border vertex of four triangles; a line comes in along its second edge and leaves along its fourth. What is asked
+ * of the whole angle is left to the two outer triangles. */
+static void a_line_through_a_border_vertex_leaves_the_rest_of_its_angle(void **state)
+{
+    (void)state;
+    int32_t found = 0;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        sl_patch *patch = chart_grid(6, 5, 0.1, chart_bumps, 0.4, seed);
+        for (int32_t v = 0; v < patch->nv && found < 6; v++) {
+            int32_t fan[8], size = 0;
+            for (int32_t c = patch->outgoing[v]; patch->border[v] != 0 && c >= 0 && size < 8;
+                 c = sl_corner_rotate(patch, c)) {
+                fan[size++] = c;
+            }
+            if (size != 4) {
+                continue;
+            }
+            const int32_t path[] = {patch->tri[sl_corner_next(fan[1])], v, patch->tri[sl_corner_next(fan[3])]};
+            const sl_constraint list[] = {{SL_CONSTRAINT_STRAIGHT, 3, path, 0.0}, {SL_CONSTRAINT_ANGLE, 1, &v, 4.4}};
+            sl_sector_table table = compile(patch, 2, list);
+            int32_t at = 0;
+            for (int32_t s = 0; s < table.view.count; s++) {
+                if (table.vertex[s] == v) {
+                    const int32_t *corner = &table.corner[table.first[s]];
+                    const bool line = table.origin[s] == 0;
+                    assert_int_equal(table.first[s + 1] - table.first[s], 2);
+                    assert_true(corner[0] == fan[line ? 1 : 0] && corner[1] == fan[line ? 2 : 3]);
+                    assert_true(test_near(table.theta[s], line ? PI : 4.4 - PI, 1e-15));
+                    at++;
+                }
+            }
+            assert_int_equal(at, 2);
+            sl_sectors_clear(&table);
+            check_solution(patch, 2, list, 1e-9);
+            const sl_constraint narrow[] = {list[0], {SL_CONSTRAINT_ANGLE, 1, &v, 3.0}};
+            refused(patch, 2, narrow, SL_INFEASIBLE, "no room");
+            found++;
+        }
+        sl_patch_free(patch);
+    }
+    assert_int_equal(found, 6);
+}
+
 static void unusable_constraints_are_bad_input(void **state)
 {
     (void)state;
@@ -552,6 +617,8 @@ int main(void)
         cmocka_unit_test(what_cannot_be_is_refused_with_its_vertices_named),
         cmocka_unit_test(a_sector_with_too_few_triangles_is_refused),
         cmocka_unit_test(what_is_left_for_free_angles_must_be_an_angle),
+        cmocka_unit_test(one_free_angle_cannot_hold_more_than_a_half_turn),
+        cmocka_unit_test(a_line_through_a_border_vertex_leaves_the_rest_of_its_angle),
         cmocka_unit_test(unusable_constraints_are_bad_input),
         cmocka_unit_test(pins_move_a_layout_by_a_similarity),
     };
