@@ -13,14 +13,17 @@
  * it. */
 static const double TARGET_SHARE = 0.96;
 
-/* A start of more stretch than this is given up for Tutte's: with limbs shrunk by orders of magnitude a conformal map
- * needs up to three times the steps. */
-static const double FAR_L2 = 10.0;
+/* A conformal map of more stretch than this is given up for one found on coarse meshes, which takes fewer steps. */
+static const double NEAR_L2 = 3.0;
+
+/* Energy weights that trade stretch for angles, tried in turn where a chart is within the bound on the one and beyond
+ * that on the others; two or three steps each. */
+static const double ANGLE_WEIGHTS[] = {-1.0, -2.0, -4.0};
 
 /* When the minimiser gives up (unless the caller says): what is still beyond FAR_L2 after hopeless_after steps, or what
  * gains too little. Over 89 charts of seven meshes it halved the steps spent on charts that stay invalid, and lost one
  * of 53 that full minimisation makes valid (at 1.495 of 1.5). */
-static const double HOPELESS_GAIN = 8.0;
+static const double FAR_L2 = 10.0, HOPELESS_GAIN = 8.0;
 
 /* One run of the chain: the patch, what it borrows, and the best map so far. */
 typedef struct chain {
@@ -196,22 +199,27 @@ cleanup:
     return status;
 }
 
-/* Minimises c->map by def and judges what comes out. */
-static sl_status minimise(chain *c, const sl_stretch_def *def, sl_flatten_method method, sl_flatten_result *trial)
+/* Minimises by def, from c->map or without a start, and judges what comes out. *found = there is a map. */
+static sl_status minimise(chain *c, const sl_stretch_def *def, bool from_map, sl_flatten_method method,
+                          sl_flatten_result *trial, bool *found)
 {
     const int32_t before = c->result->stretch.iterations;
-    const sl_status status = sl_stretch_minimise(c->patch, def, c->context, c->map, &c->result->stretch);
-    c->result->stretch.iterations += before;
+    sl_stretch_info info = {0};
+    const sl_status status = from_map ? sl_stretch_minimise(c->patch, def, c->context, c->map, &info)
+                                      : sl_stretch_unfold(c->patch, def, c->context, c->map, &info);
+    *found = status == SL_OK;
     if (status != SL_OK) {
         return is_no_answer(status) ? SL_OK : status;
     }
+    info.iterations += before;
+    c->result->stretch = info;
     sl_flatten_scale(c->patch, c->map);
     return consider(c, method, true, true, trial);
 }
 
-/* Refines c->map, an embedding of method `method`: until its stretch is within the bound, and where the angles are not
- * yet, to the end. Its border stays simple: what comes out is an embedding. */
-static sl_status refine(chain *c, sl_flatten_method method)
+/* Refines c->map, an embedding of method `method`, or makes one itself: until its stretch is within the bound, and
+ * where the angles are not yet, to the end. Its border stays simple: what comes out is an embedding. */
+static sl_status refine(chain *c, bool from_map, sl_flatten_method method, bool *found)
 {
     sl_stretch_def def = c->def->stretch;
     sl_flatten_result trial = {.verdict = SL_CHART_NOT_CONVERGED};
@@ -221,23 +229,24 @@ static sl_status refine(chain *c, sl_flatten_method method)
         def.hopeless_l2 = def.hopeless_l2 > 0.0 ? def.hopeless_l2 : FAR_L2;
         def.hopeless_gain = def.hopeless_gain > 0.0 ? def.hopeless_gain : HOPELESS_GAIN;
     }
-    const sl_status status = minimise(c, &def, method, &trial);
-    if (status != SL_OK || trial.verdict != SL_CHART_SHEARED) {
-        return status;
-    }
+    sl_status status = minimise(c, &def, from_map, method, &trial, found);
     def.target_l2 = 0.0;
-    return minimise(c, &def, method, NULL);
+    for (size_t k = 0; k < SL_COUNTOF(ANGLE_WEIGHTS) && status == SL_OK && trial.verdict == SL_CHART_SHEARED; k++) {
+        bool again;
+        def.w = fmin(c->def->stretch.w, ANGLE_WEIGHTS[k]);
+        status = minimise(c, &def, true, method, &trial, &again);
+    }
+    return status;
 }
 
 /* Tutte's embedding, with uniform weights: cotangents shrink long limbs by up to 1e4 more. */
-static sl_status try_tutte(chain *c, sl_flatten_result *trial)
+static sl_status try_tutte(chain *c)
 {
     const sl_status status = sl_tutte(c->patch, SL_TUTTE_UNIFORM, c->context, c->map);
-    trial->verdict = SL_CHART_NOT_CONVERGED;
     if (status != SL_OK) {
         return is_no_answer(status) ? SL_OK : status;
     }
-    return consider(c, SL_FLATTEN_TUTTE, false, true, trial);
+    return consider(c, SL_FLATTEN_TUTTE, false, true, NULL);
 }
 
 /* The chain for a disk that is not flat. */
@@ -250,16 +259,16 @@ static sl_status flatten_disk(chain *c)
         goto cleanup;
     }
     const sl_flatten_method conformal = trial.method;
-    if (c->def->minimise_stretch && is_distorted(trial.verdict) && (trial.distortion.l2 <= FAR_L2 || !c->def->tutte)) {
-        SL_TRY(refine(c, conformal));
+    bool found = false;
+    if (c->def->minimise_stretch && is_distorted(trial.verdict) && (trial.distortion.l2 <= NEAR_L2 || !c->def->tutte)) {
+        SL_TRY(refine(c, true, conformal, &found));
         goto cleanup;
     }
-    if (!c->def->tutte) {
-        goto cleanup;
+    if (c->def->tutte && c->def->minimise_stretch) {
+        SL_TRY(refine(c, false, SL_FLATTEN_TUTTE, &found));
     }
-    SL_TRY(try_tutte(c, &trial));
-    if (c->def->minimise_stretch && is_distorted(trial.verdict)) {
-        SL_TRY(refine(c, SL_FLATTEN_TUTTE));
+    if (c->def->tutte && !found) {
+        SL_TRY(try_tutte(c));
     }
 cleanup:
     return status;

@@ -59,12 +59,13 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
  *
  * Tried in turn until one is valid: projection (vertices within 1e-12 of the extent from one plane); ABF++; LSCM where
  * that did not converge or flipped; flip-free minimisation with a simple border, from that map if it is an embedding of
- * L2 at most 10, else from Tutte's (of 1e5 and more, Tutte's is the nearer start). The minimiser stops 4 % of the way
- * from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0, values of the chain's own).
+ * L2 at most 3, else from coarse meshes (sl_stretch_unfold; reported as Tutte's, whose embedding it begins with). The
+ * minimiser stops 4 % of the way from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0,
+ * values of the chain's own). A chart within the first bound but not the second is minimised on with weights below 0.
  * With minimise_stretch and tutte both off: the plain ABF++ verdict.
  *
  * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch,
- * mean s1/s2 <= max_angle. A chart within the first bound but not the second is minimised to the end.
+ * mean s1/s2 <= max_angle.
  * A single-facet patch is exempt from the stretch bound; without area it is valid as one point (method PLANAR). Charts
  * with 3D-degenerate triangles are judged without them for stretch. */
 SL_NODISCARD sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context,

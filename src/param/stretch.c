@@ -168,9 +168,6 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     }
     SL_TRY(sl_stretch_rest_init(patch, &s->rest));
     SL_TRY(start(s, uv));
-    if (!s->done) {
-        SL_TRY(sl_stretch_system_init(patch, &s->system));
-    }
     *out = s;
     s = NULL;
 cleanup:
@@ -319,6 +316,9 @@ sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
     for (int32_t i = 0; i < n && !s->done && s->info.iterations < s->def.max_iterations; i++) {
         sl_status status =
             sl_report_progress(context, "minimising stretch", (double)s->info.iterations / s->def.max_iterations);
+        if (status == SL_OK && s->system.H == NULL) {
+            status = sl_stretch_system_init(s->patch, &s->system);
+        }
         if (status == SL_OK) {
             status = newton_step(s);
         }

@@ -11,7 +11,7 @@
 #include "mesh/patch.h"
 
 typedef struct sl_stretch_def {
-    double w;                 /* energy weight in [0, 1]; default 0 */
+    double w;                 /* energy weight, at most 1; below 0 it buys angles for stretch; default 0 */
     int32_t max_iterations;   /* projected Newton steps; default 60 */
     double relative_decrease; /* stop when a step lowers the energy by less than this share; default 1e-4 */
     double target_l2;         /* stop as soon as the L2 stretch is at most this; 0 = never; default 0 */
@@ -30,6 +30,7 @@ typedef struct sl_stretch_info {
     double l2;                          /* of the result, the chart's best scale */
     bool converged;                     /* stopped by relative_decrease or target_l2, not by the iteration bound */
     bool hopeless;
+    int32_t levels; /* sl_stretch_unfold: coarser meshes that were mapped first */
 } sl_stretch_info;
 
 typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor; borrows the patch */
@@ -43,8 +44,8 @@ SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv
 /* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of
  * the first flip (Smith and Schaefer 2015), Armijo; longer than a full step where that pays. While the map is far from
  * its minimum (energy above 100 a unit of area) the direction is taken from rest shapes softened towards their images
- * (Liu et al. 2018). The energy never rises and no triangle ever flips. SL_CANCELLED, SL_OUT_OF_MEMORY (only with
- * simple_border: the test of the border allocates; nothing else does). */
+ * (Liu et al. 2018). The energy never rises and no triangle ever flips. SL_CANCELLED, SL_OUT_OF_MEMORY (the
+ * first step allocates the system, the test of a simple border its grid; nothing else does). */
 SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_context *context);
 
 const sl_stretch_info *sl_stretch_info_of(const sl_stretch *solver);
@@ -54,5 +55,15 @@ void sl_stretch_free(sl_stretch *solver);              /* NULL is a no-op */
 /* create, step to the end; uv in and out. info may be NULL. */
 SL_NODISCARD sl_status sl_stretch_minimise(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context,
                                            double *uv, sl_stretch_info *info);
+
+/* The same without a start: a coarse mesh of the chart (a disk) is embedded by Tutte's method and minimised, then the
+ * other vertices are put back a level at a time, each where its triangles stretch least, and every level is minimised.
+ * Charts of fewer than 200 triangles, and those where a level fails, start from Tutte's embedding of the whole. With a
+ * target_l2 and a hopeless_gain a chart is hopeless, too, when its last coarse level is far from the target. uv: out.
+ * SL_INFEASIBLE (no disk), SL_BAD_INPUT (doubles have no embedding without flips), SL_SINGULAR, SL_CANCELLED,
+ * SL_OUT_OF_MEMORY: uv and info (nullable) are unchanged then. Deterministic.
+ * Source: Hormann, Greiner, Campagna 1999, "Hierarchical parametrization of triangulated surfaces". */
+SL_NODISCARD sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context,
+                                         double *uv, sl_stretch_info *info);
 
 #endif

@@ -1,0 +1,306 @@
+/* From coarse to fine: a chart is mapped with few of its vertices first, the others are put back level by level. */
+#include "param/stretch_levels_internal.h"
+
+#include "base/memory.h"
+#include "geom/predicates.h"
+#include "param/stretch_internal.h"
+#include "param/tutte.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double LEVEL_SHARE = 0.25;     /* triangles of a level, of those of the finer one */
+static const int32_t LEAST = 200;           /* triangles: no coarser level than this */
+static const double COARSE_DECREASE = 1e-2; /* relative_decrease on the coarse levels */
+
+static const double SINGULAR = 20.0; /* energy a unit of area of the star of a vertex */
+
+/* The last coarse level stretches more than the chart itself, over 400 charts by up to 2.5 times as much where it has
+ * TRUSTED triangles; by HOPE times as much the chart is hopeless. */
+static const double HOPE = 3.0, FAR_L2 = 10.0;
+static const int32_t TRUSTED = 500;
+enum { SWEEPS = 4 };
+
+static sl_patch *level_patch_alloc(int32_t nv, int32_t nt)
+{
+    sl_patch *p = sl_calloc(1, sizeof *p);
+    if (p == NULL) {
+        return NULL;
+    }
+    p->nv = nv;
+    p->nt = nt;
+    p->loops = 1;
+    p->euler = 1;
+    p->xyz = sl_alloc(nv, 3 * sizeof *p->xyz);
+    p->tri = sl_alloc(nt, 3 * sizeof *p->tri);
+    p->twin = sl_alloc(nt, 3 * sizeof *p->twin);
+    p->corner = sl_alloc(nt, 3 * sizeof *p->corner);
+    p->facet = sl_alloc(nt, sizeof *p->facet);
+    p->outgoing = sl_alloc(nv, sizeof *p->outgoing);
+    p->border = sl_alloc(nv, sizeof *p->border);
+    if (p->xyz == NULL || p->tri == NULL || p->twin == NULL || p->corner == NULL || p->facet == NULL ||
+        p->outgoing == NULL || p->border == NULL) {
+        sl_patch_free(p);
+        return NULL;
+    }
+    return p;
+}
+
+sl_status sl_level_patch(const sl_patch *whole, const sl_level *level, sl_patch **out, int32_t **vertex)
+{
+    int32_t nv = 0;
+    int32_t *local = sl_alloc(whole->nv, sizeof *local);
+    *out = NULL;
+    *vertex = NULL;
+    if (local == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    memset(local, -1, (size_t)whole->nv * sizeof *local);
+    for (int32_t c = 0; c < 3 * level->nt; c++) {
+        local[level->tri[c]] = 0;
+    }
+    for (int32_t v = 0; v < whole->nv; v++) {
+        local[v] = local[v] == 0 ? nv++ : -1;
+    }
+    sl_patch *p = level_patch_alloc(nv, level->nt);
+    *vertex = sl_alloc(nv, sizeof **vertex);
+    if (p == NULL || *vertex == NULL) {
+        sl_patch_free(p);
+        sl_free(*vertex);
+        sl_free(local);
+        *vertex = NULL;
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t v = 0; v < whole->nv; v++) {
+        if (local[v] >= 0) {
+            (*vertex)[local[v]] = v;
+            memcpy(&p->xyz[3 * (int64_t)local[v]], &whole->xyz[3 * (int64_t)v], 3 * sizeof *p->xyz);
+            p->border[local[v]] = whole->border[v];
+        }
+    }
+    for (int32_t c = 0; c < 3 * level->nt; c++) {
+        const int32_t v = local[level->tri[c]];
+        p->tri[c] = v;
+        p->twin[c] = level->twin[c];
+        p->corner[c] = c;
+        p->facet[c / 3] = c / 3;
+        if (p->border[v] == 0 || level->twin[c] < 0) {
+            p->outgoing[v] = c;
+        }
+    }
+    sl_free(local);
+    *out = p;
+    return SL_OK;
+}
+
+/* One run down the levels. */
+typedef struct descent {
+    const sl_patch *patch;
+    const sl_stretch_def *def;
+    const sl_context *context;
+    sl_levels levels;
+    double *uv;    /* of all the patch's vertices */
+    int32_t *next; /* along the border as it is at this level */
+    int32_t loop;  /* a vertex that is always on it */
+    bool hopeless;
+} descent;
+
+/* Interior vertices whose star is far worse than what a minimum has are moved one by one; what the Newton steps after
+ * that meet is no longer singular. */
+static void settle(const sl_patch *patch, double w, double *uv)
+{
+    int32_t ring[SL_RING_MAX], moved = 1;
+    for (int sweep = 0; sweep < SWEEPS && moved > 0; sweep++) {
+        moved = 0;
+        for (int32_t v = 0; v < patch->nv; v++) {
+            int32_t h = patch->outgoing[v], count = 0;
+            if (patch->border[v] != 0) {
+                continue;
+            }
+            do {
+                if (count < SL_RING_MAX) {
+                    ring[count] = patch->tri[sl_corner_next(h)];
+                }
+                count++;
+                h = patch->twin[sl_corner_prev(h)];
+            } while (h != patch->outgoing[v]);
+            if (count <= SL_RING_MAX) {
+                const sl_removal star = {.vertex = v, .count = count};
+                moved += sl_stretch_settle(patch->xyz, &star, ring, w, SINGULAR, uv);
+            }
+        }
+    }
+}
+
+/* Would the border's edge a - b meet another one? */
+static bool edge_is_free(const descent *d, int32_t a, int32_t b)
+{
+    const double *p = &d->uv[2 * (int64_t)a], *q = &d->uv[2 * (int64_t)b];
+    const double x0 = fmin(p[0], q[0]), x1 = fmax(p[0], q[0]), y0 = fmin(p[1], q[1]), y1 = fmax(p[1], q[1]);
+    int32_t v = d->loop;
+    do {
+        const int32_t w = d->next[v];
+        const double *r = &d->uv[2 * (int64_t)v], *s = &d->uv[2 * (int64_t)w];
+        if (v != a && v != b && w != a && w != b && fmin(r[0], s[0]) <= x1 && fmax(r[0], s[0]) >= x0 &&
+            fmin(r[1], s[1]) <= y1 && fmax(r[1], s[1]) >= y0 && sl_segments_cross(p, q, r, s) != SL_CROSS_NONE) {
+            return false;
+        }
+        v = w;
+    } while (v != d->loop);
+    return true;
+}
+
+/* A border vertex goes where its triangles want it, and where that would make the border cross itself, to the inner
+ * side of the edge that stood for it. */
+static bool insert(descent *d, const sl_removal *removal)
+{
+    const int32_t *ring = &d->levels.ring[removal->first], v = removal->vertex;
+    const int32_t next = ring[0], last = ring[removal->count - 1];
+    if (!sl_stretch_insert(d->patch->xyz, removal, ring, d->def->w, false, d->uv)) {
+        return false;
+    }
+    if (!removal->open) {
+        return true;
+    }
+    if (d->def->simple_border && !(edge_is_free(d, last, v) && edge_is_free(d, v, next)) &&
+        !sl_stretch_insert(d->patch->xyz, removal, ring, d->def->w, true, d->uv)) {
+        return false;
+    }
+    d->next[last] = v;
+    d->next[v] = next;
+    return true;
+}
+
+/* Puts the vertices back that level l lacks and the next finer one has. */
+static bool refine_level(descent *d, int32_t l)
+{
+    const int32_t first = l > 0 ? d->levels.level[l - 1].removals : 0;
+    for (int32_t r = d->levels.level[l].removals; r-- > first;) {
+        if (!insert(d, &d->levels.removal[r])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void start_border(descent *d, const sl_level *level)
+{
+    for (int32_t c = 0; c < 3 * level->nt; c++) {
+        if (level->twin[c] < 0) {
+            d->next[level->tri[c]] = level->tri[sl_corner_next(c)];
+            d->loop = level->tri[c];
+        }
+    }
+}
+
+/* What the minimum on a coarse level says about that of the chart. */
+static bool is_hopeless(const sl_stretch_def *def, const sl_patch *patch, const sl_stretch_info *info)
+{
+    return def->hopeless_gain > 0.0 && def->target_l2 > 0.0 && patch->nt >= TRUSTED && info->l2 <= FAR_L2 &&
+           info->l2 - 1.0 > HOPE * (def->target_l2 - 1.0);
+}
+
+/* Where level l begins: the coarsest from Tutte's embedding. */
+static sl_status start_level(descent *d, int32_t l, const sl_patch *patch, const int32_t *vertex, double *uv)
+{
+    if (l == d->levels.count - 1) {
+        start_border(d, &d->levels.level[l]);
+        return sl_tutte(patch, SL_TUTTE_UNIFORM, d->context, uv);
+    }
+    for (int32_t v = 0; v < patch->nv; v++) {
+        memcpy(&uv[2 * (int64_t)v], &d->uv[2 * (int64_t)vertex[v]], 2 * sizeof *uv);
+    }
+    settle(patch, d->def->w, uv);
+    return SL_OK;
+}
+
+/* Minimises on level l. SL_BAD_INPUT when doubles have no embedding without flips. */
+static sl_status solve_level(descent *d, int32_t l)
+{
+    sl_status status = SL_OK;
+    sl_patch *patch = NULL;
+    int32_t *vertex = NULL;
+    double *uv = NULL;
+    sl_stretch_info info;
+    sl_stretch_def def = *d->def;
+    def.relative_decrease = COARSE_DECREASE;
+    def.target_l2 = 0.0;
+    SL_TRY(sl_level_patch(d->patch, &d->levels.level[l], &patch, &vertex));
+    uv = sl_alloc(patch->nv, 2 * sizeof *uv);
+    if (uv == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    SL_TRY(start_level(d, l, patch, vertex, uv));
+    SL_TRY(sl_stretch_minimise(patch, &def, d->context, uv, &info));
+    for (int32_t v = 0; v < patch->nv; v++) {
+        memcpy(&d->uv[2 * (int64_t)vertex[v]], &uv[2 * (int64_t)v], 2 * sizeof *uv);
+    }
+    d->hopeless = d->hopeless || is_hopeless(d->def, patch, &info);
+cleanup:
+    sl_free(uv);
+    sl_free(vertex);
+    sl_patch_free(patch);
+    return status;
+}
+
+/* Down to the coarsest level and back up; then d->uv is a map of the whole. */
+static sl_status climb(descent *d)
+{
+    sl_status status = d->levels.count > 0 ? SL_OK : SL_BAD_INPUT;
+    for (int32_t l = d->levels.count - 1; l >= 0 && status == SL_OK; l--) {
+        status = d->hopeless ? SL_OK : solve_level(d, l);
+        if (status == SL_OK && !refine_level(d, l)) {
+            status = SL_BAD_INPUT;
+        }
+    }
+    if (status == SL_OK) {
+        settle(d->patch, d->def->w, d->uv);
+    }
+    return status;
+}
+
+/* Minimises the map of the whole, unless that is in vain. */
+static sl_status finish(const descent *d, sl_stretch_info *info)
+{
+    sl_stretch_def def = *d->def;
+    def.max_iterations = d->hopeless ? 0 : def.max_iterations;
+    const sl_status status = sl_stretch_minimise(d->patch, &def, d->context, d->uv, info);
+    info->hopeless = info->hopeless || (d->hopeless && !info->converged);
+    info->levels = d->levels.count;
+    return status;
+}
+
+sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context, double *uv,
+                            sl_stretch_info *info)
+{
+    sl_status status = SL_OK;
+    sl_stretch_info result = {0};
+    descent d = {.patch = patch, .def = def, .context = context};
+    if (!sl_patch_is_disk(patch)) {
+        return SL_INFEASIBLE;
+    }
+    SL_TRY(sl_levels_create(patch, LEVEL_SHARE, LEAST, &d.levels));
+    d.uv = sl_alloc(patch->nv, 2 * sizeof *d.uv);
+    d.next = sl_alloc(patch->nv, sizeof *d.next);
+    if (d.uv == NULL || d.next == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    status = climb(&d);
+    status = status == SL_OK ? finish(&d, &result) : status;
+    if (status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_INFEASIBLE) { /* then without levels */
+        d.hopeless = false;
+        SL_TRY(sl_tutte(patch, SL_TUTTE_UNIFORM, context, d.uv));
+        status = finish(&d, &result);
+        result.levels = 0;
+    }
+    SL_TRY(status);
+    memcpy(uv, d.uv, 2 * (size_t)patch->nv * sizeof *uv);
+    if (info != NULL) {
+        *info = result;
+    }
+cleanup:
+    sl_levels_clear(&d.levels);
+    sl_free(d.uv);
+    sl_free(d.next);
+    return status;
+}
