@@ -59,6 +59,7 @@ int cli_abf(int argc, char **argv);
 int cli_check(int argc, char **argv);
 int cli_demo(int argc, char **argv);
 int cli_measure(int argc, char **argv);
+int cli_overlap(int argc, char **argv);
 int cli_render(int argc, char **argv);
 int cli_segment(int argc, char **argv);
 int cli_spectrum(int argc, char **argv);

@@ -52,7 +52,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure segment spectrum abf render theorem demo; do
+for verb in unwrap check measure overlap segment spectrum abf render theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -211,6 +211,45 @@ contains err.txt 'no exact symmetry'
 expect 4 "$seamlab" unwrap $mesh -o lone.obj --symmetry exact --strict
 expect 2 "$seamlab" unwrap $mesh -o lone.obj --symmetry perfect
 contains err.txt 'auto|off|exact|near'
+
+# --- overlap
+expect 0 "$seamlab" overlap uv1.obj --exact --png counts.png --json
+json out.txt
+contains out.txt '"overlap":false'
+head -c 8 counts.png | od -An -tx1 | grep -q '89 50 4e 47 0d 0a 1a 0a' || complain "counts.png is no PNG"
+expect 0 "$seamlab" overlap shared1.obj --exact
+contains out.txt 'by intent'
+expect 5 "$seamlab" overlap orphan.obj --exact
+expect 5 "$seamlab" overlap orphan.obj --resolution 512 --json
+contains out.txt '"overlap":true'
+cat >crossing.obj <<'EOF'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 2 0 1
+v 3 0 1
+v 3 1 1
+vt 0.1 0.1
+vt 0.5 0.1
+vt 0.50001 0.50002
+vt 0.5 0.5
+vt 0.9 0.4
+vt 0.8 0.9
+f 1/1 2/2 3/3
+f 4/4 5/5 6/6
+EOF
+expect 0 "$seamlab" overlap crossing.obj --resolution 256
+expect 5 "$seamlab" overlap crossing.obj --resolution 256 --exact
+contains out.txt 'facets 1 and 2'
+sed 's/vt 0.9 0.4/vt nan 0.4/' crossing.obj >nan.obj
+expect 3 "$seamlab" overlap nan.obj
+sed 's/vt 0.9 0.4/vt 1e308 -1e308/' crossing.obj >far.obj
+expect 0 "$seamlab" overlap far.obj --resolution 64 --json
+json out.txt
+expect 3 "$seamlab" overlap $mesh.no
+expect 3 "$seamlab" overlap demo/no-such-file.obj
+expect 2 "$seamlab" overlap crossing.obj --resolution 0
+expect 1 "$seamlab" overlap crossing.obj --png no/folder/counts.png
 
 # --- measure
 expect 0 "$seamlab" measure uv1.obj
