@@ -204,7 +204,7 @@ static inline bool test_regions_touch(const sl_mesh *m, const int32_t *region, i
 /* Every number is used, and every region hangs together. */
 static inline void test_check_regions(const sl_mesh *m, const int32_t *region, int32_t count)
 {
-    int32_t *root = malloc((size_t)m->nf * sizeof *root), *parts = calloc((size_t)count, sizeof *parts);
+    int32_t *root = malloc((size_t)m->nf * sizeof *root), *parts = calloc(count > 0 ? (size_t)count : 1, sizeof *parts);
     for (int32_t f = 0; f < m->nf; f++) {
         assert_in_range(region[f], 0, count - 1);
         root[f] = f;
