@@ -61,6 +61,8 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
         {"tutte", 0, CLI_ON_OFF, &o->def.flatten.tutte, 0, 0, NULL, NULL, "Tutte's embedding as last resort (on)"},
         {"minimise", 0, CLI_ON_OFF, &o->def.flatten.minimise_stretch, 0, 0, NULL, NULL,
          "lower the stretch before splitting a chart for it (on)"},
+        {"polish", 0, CLI_ON_OFF, &o->def.flatten.polish, 0, 0, NULL, NULL,
+         "lower the stretch of charts that are valid without, too (off)"},
     };
     memcpy(table, entries, sizeof entries);
 }

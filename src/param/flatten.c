@@ -239,6 +239,16 @@ static sl_status refine(chain *c, bool from_map, sl_flatten_method method, bool 
     return status;
 }
 
+/* Minimises c->map, which is valid, to the end; what comes out counts if it is valid and stretches less. */
+static sl_status polish(chain *c, sl_flatten_method method)
+{
+    sl_stretch_def def = c->def->stretch;
+    bool found;
+    def.simple_border = true;
+    def.target_l2 = 0.0;
+    return minimise(c, &def, true, method, NULL, &found);
+}
+
 /* Tutte's embedding, with uniform weights: cotangents shrink long limbs by up to 1e4 more. */
 static sl_status try_tutte(chain *c)
 {
@@ -255,6 +265,9 @@ static sl_status flatten_disk(chain *c)
     sl_status status = SL_OK;
     sl_flatten_result trial;
     SL_TRY(try_conformal(c, &trial));
+    if (trial.verdict == SL_CHART_VALID && c->def->polish) {
+        SL_TRY(polish(c, trial.method));
+    }
     if (trial.verdict == SL_CHART_VALID || (!c->def->tutte && !c->def->minimise_stretch)) {
         goto cleanup;
     }

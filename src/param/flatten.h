@@ -34,6 +34,8 @@ typedef struct sl_flatten_def {
     bool tutte;            /* Tutte as last resort where ABF++ fails; default true */
     double max_stretch;    /* tau, the bound on L2; default 1.5; infinite = none */
     double max_angle;      /* bound on the area-weighted mean of s1/s2, above 1; default infinite = none */
+    bool polish; /* minimise a chart that ABF++ made valid, too: less stretch for some shear within max_angle; default
+                    false */
     sl_stretch_def stretch;
 } sl_flatten_def;
 
@@ -62,7 +64,8 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
  * L2 at most 3, else from coarse meshes (sl_stretch_unfold; reported as Tutte's, whose embedding it begins with). The
  * minimiser stops 4 % of the way from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0,
  * values of the chain's own). A chart within the first bound but not the second is minimised on with weights below 0.
- * With minimise_stretch and tutte both off: the plain ABF++ verdict.
+ * With polish a conformal map that is valid is minimised to the end and replaced by what comes out if that is valid and
+ * stretches less. With minimise_stretch and tutte both off: the plain ABF++ verdict.
  *
  * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch,
  * mean s1/s2 <= max_angle.

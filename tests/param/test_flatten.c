@@ -210,6 +210,33 @@ static void mild_stretch_is_refined_from_abf(void **state)
 
 /* Lowering the stretch of a cap costs angles: a bound on them turns the same map from valid to sheared, and makes the
  * minimisation go on to its end. */
+/* Less stretch for some shear, and never beyond the bound on that. */
+static void polishing_lowers_the_stretch_of_valid_charts(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        sl_patch *patch = chart_hexagon(5, 0.2, chart_bumps, 1.6, seed);
+        sl_flatten_def def = sl_flatten_default();
+        def.max_stretch = 2.0;
+        outcome before = flatten(patch, &def);
+        def.polish = true;
+        outcome after = flatten(patch, &def);
+        assert_true(before.r.verdict == SL_CHART_VALID && !before.r.stretch_minimised);
+        assert_true(after.r.verdict == SL_CHART_VALID && after.r.stretch_minimised);
+        assert_int_equal(after.r.method, SL_FLATTEN_ABF);
+        assert_true(after.r.distortion.l2 - 1.0 < 0.9 * (before.r.distortion.l2 - 1.0));
+        assert_true(after.r.distortion.angle_mean > before.r.distortion.angle_mean);
+        def.max_angle = 0.5 * (after.r.distortion.angle_mean + before.r.distortion.angle_mean);
+        outcome kept = flatten(patch, &def);
+        assert_true(kept.r.verdict == SL_CHART_VALID && !kept.r.stretch_minimised);
+        assert_memory_equal(kept.uv, before.uv, 2 * (size_t)patch->nv * sizeof(double));
+        free(before.uv);
+        free(after.uv);
+        free(kept.uv);
+        sl_patch_free(patch);
+    }
+}
+
 static void a_chart_within_its_stretch_may_still_be_sheared(void **state)
 {
     (void)state;
@@ -371,6 +398,7 @@ int main(void)
         cmocka_unit_test(spikes_fail_in_abf_and_are_saved_by_tutte),
         cmocka_unit_test(stretched_charts_are_said_so_or_mended),
         cmocka_unit_test(mild_stretch_is_refined_from_abf),
+        cmocka_unit_test(polishing_lowers_the_stretch_of_valid_charts),
         cmocka_unit_test(a_chart_within_its_stretch_may_still_be_sheared),
         cmocka_unit_test(a_ramp_overlaps_by_abf_and_is_embedded_by_tutte),
         cmocka_unit_test(a_single_facet_is_exempt_from_the_bound),
