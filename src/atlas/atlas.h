@@ -26,9 +26,10 @@ typedef struct sl_atlas_check {
     int32_t resolution;                         /* texels a side */
     int64_t covered_texels, overlapping_texels; /* of charts that are no copies */
     int64_t shared_texels;                      /* hit by copies, too: intended, and no fault */
+    bool proven;                                /* no two triangles of these charts overlap, by exact predicates */
     int32_t unlike;                             /* corners of copies whose UVs are not, bit for bit, those they copy */
-    bool passed; /* nothing flipped, degenerate, overlapping, uncertified or unlike; a mirrored copy is judged
-                    by its own orientation */
+    bool passed; /* nothing flipped, degenerate, overlapping, uncertified or unlike, and proven; a mirrored copy is
+                    judged by its own orientation */
 } sl_atlas_check;
 
 /* A sentence for the user about one chart (or none: -1). */

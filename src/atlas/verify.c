@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "overlap/certificate.h"
 #include "overlap/coverage.h"
+#include "overlap/exact.h"
 
 #include <string.h>
 
@@ -109,10 +110,12 @@ static int32_t select_triangles(const sl_atlas *atlas, bool copies, int32_t *tri
     return n;
 }
 
-/* Texels of the whole page hit more than once by charts that are no copies, and those that copies hit. */
+/* Texels of the whole page hit more than once by charts that are no copies, and those that copies hit; and the proof
+ * that no two triangles of the former overlap, in one chart or two. */
 static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
 {
     sl_coverage *coverage = NULL;
+    sl_exact_overlap exact;
     sl_status status = SL_OK;
     int32_t *tri = sl_alloc(3 * (int64_t)atlas->triangulation->nt, sizeof *tri);
     for (int copies = 0; copies < 2; copies++) {
@@ -128,6 +131,8 @@ static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
         if (copies == 0) {
             atlas->check.covered_texels = sl_coverage_covered(coverage);
             atlas->check.overlapping_texels = sl_coverage_overlapping(coverage);
+            SL_TRY(sl_overlap_exact(atlas->corner_uv, nt, tri, context, NULL, &exact));
+            atlas->check.proven = exact.red == 0;
         } else {
             atlas->check.shared_texels = sl_coverage_covered(coverage);
         }
@@ -173,7 +178,7 @@ sl_status sl_atlas_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_con
     SL_TRY(count_texels(atlas, context));
     check->unlike = count_unlike(atlas);
     check->passed = check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
-                    check->overlapping_texels == 0 && check->unlike == 0;
+                    check->overlapping_texels == 0 && check->proven && check->unlike == 0;
 cleanup:
     sl_free(job.verdict);
     return status;

@@ -30,14 +30,14 @@ typedef struct unwrap_options {
     cli_segment_options segment;
     sl_atlas_def def;
     const char *output, *preview, *seams, *labels;
-    bool keep_seams;
+    bool keep_seams, allow_overlap;
 } unwrap_options;
 
-#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 8)
+#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 9)
 
 static void option_table(unwrap_options *o, cli_option *table)
 {
-    const cli_option own[8] = {
+    const cli_option own[9] = {
         {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY to write"},
         {"resolution", 0, CLI_INT, &o->def.pack.resolution, 16, 65536, NULL, "N", "texels a side (2048)"},
         {"margin", 0, CLI_REAL, &o->def.pack.margin, 0, 1024, NULL, "T", "texels between charts (4)"},
@@ -45,11 +45,13 @@ static void option_table(unwrap_options *o, cli_option *table)
         {"seams", 0, CLI_TEXT, &o->seams, 0, 0, NULL, "FILE", "your seams: a line of two vertex numbers an edge"},
         {"labels", 0, CLI_TEXT, &o->labels, 0, 0, NULL, "FILE", "your charts: a line with a number a facet"},
         {"keep-seams", 0, CLI_FLAG, &o->keep_seams, 0, 0, NULL, NULL, "the input's own UV seams"},
+        {"allow-overlap", 0, CLI_FLAG, &o->allow_overlap, 0, 0, NULL, NULL,
+         "write an atlas whose charts overlap, marked uncertified"},
         {"strict", 0, CLI_FLAG, &o->run.strict, 0, 0, NULL, NULL, "exit 4 when there is a warning"},
     };
     memcpy(table, own, sizeof own);
-    cli_segment_table(&o->segment, table + 8);
-    cli_common_options(&o->run, table + 8 + CLI_SEGMENT_OPTIONS);
+    cli_segment_table(&o->segment, table + 9);
+    cli_common_options(&o->run, table + 9 + CLI_SEGMENT_OPTIONS);
 }
 
 static int usage(const char *what)
@@ -150,8 +152,9 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
         json_decref(j);
         return;
     }
-    cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, no flip, no overlap at %d^2",
-             seg->nchart, seam, worst_stretch(seg), atlas->pack.fill, atlas->check.resolution);
+    cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, %s", seg->nchart, seam,
+             worst_stretch(seg), atlas->pack.fill,
+             atlas->check.passed ? "no flip, no overlap: proven" : "uncertified: charts overlap");
     if (seg->sharing.copies > 0) {
         cli_note(&o->run, "%d of them are mirror images or copies that share their texture: %.0f %% of it is saved",
                  seg->sharing.copies, 100.0 * seg->sharing.area);
@@ -166,11 +169,15 @@ static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *a
         cli_note(&o->run, "warning: %s", atlas->warning[k].text);
     }
     if (!check->passed) {
+        const bool written = o->allow_overlap && check->unlike == 0;
         fprintf(stderr,
-                "seamlab unwrap: the atlas failed its own check and is not written: %d flipped, %d degenerate "
+                "seamlab unwrap: the atlas failed its own check and is %s: %d flipped, %d degenerate "
                 "triangles, %d charts that may overlap themselves, %lld texels hit twice\n",
-                check->flipped, check->degenerate, check->uncertified_charts, (long long)check->overlapping_texels);
-        return CLI_CHECK_FAILED;
+                written ? "written all the same, uncertified" : "not written", check->flipped, check->degenerate,
+                check->uncertified_charts, (long long)check->overlapping_texels);
+        if (!written) {
+            return CLI_CHECK_FAILED;
+        }
     }
     if (sl_meshfile_losses(file, o->output, losses, sizeof losses)) {
         cli_note(&o->run, "note: the output's format does not hold %s", losses);
