@@ -7,7 +7,7 @@
 
 /* What each side of a wheel's gradient is multiplied by: the gradient of the product form is the log form's with each
  * side times its product of sines, that of the ratio form the log form's times the quotient of the two. */
-static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel, const double *alpha)
+static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel)
 {
     const sl_patch *patch = system->patch;
     const int32_t base = system->nsectors, wheels = system->nrows - base;
@@ -21,7 +21,7 @@ static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel, const double
         const int32_t row = system->wheel_row[patch->tri[c]];
         if (row >= 0) {
             double *scale = &system->wheel_scale[2 * ((int64_t)row - base)];
-            const double next = sin(alpha[sl_corner_next(c)]), prev = sin(alpha[sl_corner_prev(c)]);
+            const double next = system->sine[sl_corner_next(c)], prev = system->sine[sl_corner_prev(c)];
             scale[0] *= wheel == SL_ABF_PRODUCT ? next : next / prev;
             scale[1] *= wheel == SL_ABF_PRODUCT ? prev : next / prev;
         }
@@ -30,13 +30,15 @@ static void scale_wheels(sl_abf_system *system, sl_abf_wheel wheel, const double
 
 void sl_abf_system_linearise(sl_abf_system *system, sl_abf_wheel wheel, const double *alpha)
 {
-    scale_wheels(system, wheel, alpha);
+    for (int64_t c = 0; c < 3 * (int64_t)system->patch->nt; c++) {
+        system->sine[c] = sin(alpha[c]);
+        system->cot[c] = cos(alpha[c]) / system->sine[c];
+    }
+    scale_wheels(system, wheel);
     for (int32_t t = 0; t < system->patch->nt; t++) {
-        double cot[3];
+        const double *cot = &system->cot[3 * (int64_t)t];
         const int64_t *entry = &system->wheel_entry[3 * (int64_t)t];
         for (int k = 0; k < 3; k++) {
-            const double a = alpha[3 * (int64_t)t + k];
-            cot[k] = cos(a) / sin(a);
             for (int j = 0; j < 3 && entry[k] >= 0; j++) {
                 system->coeff[3 * entry[k] + j] = 0.0;
             }

@@ -4,6 +4,7 @@
 #include "param/abf_internal.h"
 
 static const double pi = 3.14159265358979323846;
+static const int32_t quotients_per_log = 8;
 
 /**
  * Triangle validity residuals g1.
@@ -50,29 +51,42 @@ void sl_abf_eval_g2(const sl_sectors *sectors, const double *alpha, double *g2)
     }
 }
 
-/* One wheel, counter-clockwise; next and prev are the corners after and before the hub in each of its triangles. */
-static double wheel_residual(const sl_patch *patch, int32_t v, sl_abf_wheel wheel, const double *alpha)
+/* One wheel, counter-clockwise; next and prev are the corners after and before the hub in each of its triangles. The
+ * log form takes one logarithm for every eight quotients, which do not overflow for any angles that doubles can hold
+ * apart from 0 and pi. sine: of each corner, NULL = to be computed. */
+static double wheel_residual(const sl_patch *patch, int32_t v, sl_abf_wheel wheel, const double *alpha,
+                             const double *sine)
 {
     const int32_t start = patch->outgoing[v];
-    int32_t c = start;
+    int32_t c = start, factors = 0;
     double sum = 0.0, ratio = 1.0, next = 1.0, prev = 1.0;
     do {
-        const double s_next = sin(alpha[sl_corner_next(c)]), s_prev = sin(alpha[sl_corner_prev(c)]);
-        switch (wheel) {
-        case SL_ABF_LOG:
-            sum += log(s_next / s_prev);
-            break;
-        case SL_ABF_PRODUCT:
+        const int32_t n = sl_corner_next(c), p = sl_corner_prev(c);
+        const double s_next = sine != NULL ? sine[n] : sin(alpha[n]);
+        const double s_prev = sine != NULL ? sine[p] : sin(alpha[p]);
+        if (wheel == SL_ABF_PRODUCT) {
             next *= s_next;
             prev *= s_prev;
-            break;
-        case SL_ABF_RATIO:
+        } else {
             ratio *= s_next / s_prev;
-            break;
+        }
+        if (wheel == SL_ABF_LOG && ++factors % quotients_per_log == 0) {
+            sum += log(ratio);
+            ratio = 1.0;
         }
         c = sl_corner_rotate(patch, c);
     } while (c != start);
-    return wheel == SL_ABF_LOG ? sum : wheel == SL_ABF_PRODUCT ? next - prev : ratio - 1.0;
+    return wheel == SL_ABF_LOG ? sum + log(ratio) : wheel == SL_ABF_PRODUCT ? next - prev : ratio - 1.0;
+}
+
+static void all_wheels(const sl_patch *patch, sl_abf_wheel wheel, const double *alpha, const double *sine, double *g3)
+{
+    int32_t i = 0;
+    for (int32_t v = 0; v < patch->nv; v++) {
+        if (patch->border[v] == 0) {
+            g3[i++] = wheel_residual(patch, v, wheel, alpha, sine);
+        }
+    }
 }
 
 /**
@@ -92,10 +106,10 @@ static double wheel_residual(const sl_patch *patch, int32_t v, sl_abf_wheel whee
  */
 void sl_abf_eval_g3(const sl_patch *patch, sl_abf_wheel wheel, const double *alpha, double *g3)
 {
-    int32_t i = 0;
-    for (int32_t v = 0; v < patch->nv; v++) {
-        if (patch->border[v] == 0) {
-            g3[i++] = wheel_residual(patch, v, wheel, alpha);
-        }
-    }
+    all_wheels(patch, wheel, alpha, NULL, g3);
+}
+
+void sl_abf_system_eval_g3(const sl_abf_system *system, sl_abf_wheel wheel, double *g3)
+{
+    all_wheels(system->patch, wheel, NULL, system->sine, g3);
 }

@@ -41,6 +41,7 @@ typedef struct sl_abf_system {
     int64_t *slot;        /* slot_first[nt] */
     double *wheel_scale;  /* 2 (nrows - nsectors): the products of sines on the two sides of g3 in product form, their
                              quotient twice in ratio form, else 1 */
+    double *sine, *cot;   /* 3 nt: of the angles last linearised at */
     int32_t ndropped;
     int32_t *dropped; /* rows left out: they have no triangle, and in M the row of the identity */
     sl_csc *M;        /* nrows x nrows, lower triangle */
@@ -56,6 +57,9 @@ void sl_abf_system_clear(sl_abf_system *system);
 /* The g3 coefficients at alpha: +cot at the next corner of each wheel triangle, -cot at the previous one, times the
  * wheel_scale of that side. Allocates nothing. */
 void sl_abf_system_linearise(sl_abf_system *system, sl_abf_wheel wheel, const double *alpha);
+
+/* sl_abf_eval_g3 at the angles last linearised at, without a sine to compute. */
+void sl_abf_system_eval_g3(const sl_abf_system *system, sl_abf_wheel wheel, double *g3);
 
 /* P of one triangle applied to c, without a division by an entry of Lambda, which may be 0 or negative as long as P is
  * positive semidefinite:

@@ -45,7 +45,7 @@ void sl_abf_evaluate(sl_abf *solver)
     sl_abf_system_linearise(&solver->system, solver->def.wheel, solver->alpha);
     sl_abf_eval_g1(patch, solver->alpha, solver->g1);
     sl_abf_eval_g2(&solver->sectors, solver->alpha, solver->g);
-    sl_abf_eval_g3(patch, solver->def.wheel, solver->alpha, &solver->g[nsectors]);
+    sl_abf_system_eval_g3(&solver->system, solver->def.wheel, &solver->g[nsectors]);
     double energy = 0.0, smallest = pi;
     for (int64_t c = 0; c < nc; c++) {
         const double off = solver->alpha[c] - solver->phi[c];
@@ -105,7 +105,7 @@ static void add_curvature(sl_abf *solver)
             const int32_t c = 3 * t + k;
             const int32_t after = system->wheel_row[patch->tri[sl_corner_prev(c)]]; /* c is the next corner there */
             const int32_t before = system->wheel_row[patch->tri[sl_corner_next(c)]];
-            const double s = sin(solver->alpha[c]);
+            const double s = system->sine[c];
             bent[k] = 0.0;
             if (after >= 0) {
                 bent[k] -= solver->lambda2[after] * system->wheel_scale[2 * (int64_t)(after - system->nsectors)];
@@ -142,7 +142,7 @@ static void shift_gradient(sl_abf *solver)
     const int32_t *row = solver->system.wheel_row;
     for (int32_t c = 0; c < 3 * patch->nt; c++) {
         const int32_t hub[2] = {row[patch->tri[sl_corner_prev(c)]], row[patch->tri[sl_corner_next(c)]]};
-        const double cot = cos(solver->alpha[c]) / sin(solver->alpha[c]);
+        const double cot = solver->system.cot[c];
         for (int side = 0; side < 2; side++) {
             if (hub[side] >= 0) {
                 solver->gradient[c] -= 0.5 * cot * solver->lambda2[hub[side]] * solver->g[hub[side]];
@@ -167,7 +167,7 @@ static void shift_multipliers(sl_abf *solver)
     for (int32_t c = 0; c < 3 * patch->nt; c++) {
         const int32_t hub[2] = {system->wheel_row[patch->tri[sl_corner_prev(c)]],
                                 system->wheel_row[patch->tri[sl_corner_next(c)]]};
-        const double turn = solver->delta[c] * cos(solver->alpha[c]) / sin(solver->alpha[c]);
+        const double turn = solver->delta[c] * system->cot[c];
         for (int side = 0; side < 2; side++) {
             if (hub[side] >= 0) {
                 solver->rhs[hub[side]] -= 0.5 * solver->lambda2[hub[side]] * turn;

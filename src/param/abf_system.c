@@ -139,7 +139,10 @@ static sl_status number_wheels(sl_abf_system *system)
     }
     system->nrows = (int32_t)row;
     system->wheel_scale = sl_alloc(2 * (row - system->nsectors), sizeof *system->wheel_scale);
-    return system->wheel_scale == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+    system->sine = sl_calloc(3 * (int64_t)patch->nt, sizeof *system->sine);
+    system->cot = sl_calloc(3 * (int64_t)patch->nt, sizeof *system->cot);
+    const bool failed = system->wheel_scale == NULL || system->sine == NULL || system->cot == NULL;
+    return failed ? SL_OUT_OF_MEMORY : SL_OK;
 }
 
 static void incidence_clear(incidence *inc)
@@ -283,6 +286,8 @@ void sl_abf_system_clear(sl_abf_system *system)
     sl_free(system->slot_first);
     sl_free(system->slot);
     sl_free(system->wheel_scale);
+    sl_free(system->sine);
+    sl_free(system->cot);
     sl_free(system->dropped);
     sl_csc_free(system->M);
     *system = (sl_abf_system){0};
