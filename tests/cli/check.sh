@@ -251,6 +251,24 @@ expect 3 "$seamlab" overlap demo/no-such-file.obj
 expect 2 "$seamlab" overlap crossing.obj --resolution 0
 expect 1 "$seamlab" overlap crossing.obj --png no/folder/counts.png
 
+# a ramp of 1.6 turns as one chart: with ABF++ alone it covers itself
+awk 'BEGIN {
+    for (s = 0; s <= 80; s++) for (k = 0; k < 3; k++) {
+        t = s * 0.12566; r = 1 + 0.2 * k + 0.01 * sin(7 * s + k)
+        printf "v %.9f %.9f %.9f\n", r * cos(t), r * sin(t), 0.06 * t
+    }
+    for (s = 0; s < 80; s++) for (k = 1; k < 3; k++) printf "f %d %d %d %d\n", 3*s+k, 3*s+k+1, 3*s+k+4, 3*s+k+3
+}' >ramp.obj
+awk 'BEGIN { for (f = 0; f < 160; f++) print 7 }' >ramp.txt
+expect 0 "$seamlab" unwrap ramp.obj -o simple.obj --labels ramp.txt
+expect 0 "$seamlab" overlap simple.obj --exact
+expect 5 "$seamlab" unwrap ramp.obj -o twice.obj --labels ramp.txt --tutte off --minimise off
+no_file twice.obj twice.atlas.json
+expect 0 "$seamlab" unwrap ramp.obj -o twice.obj --labels ramp.txt --tutte off --minimise off --allow-overlap
+contains err.txt uncertified
+contains twice.atlas.json '"passed":false'
+expect 5 "$seamlab" overlap twice.obj
+
 # --- measure
 expect 0 "$seamlab" measure uv1.obj
 contains out.txt 'flipped 0'
