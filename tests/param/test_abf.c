@@ -314,59 +314,6 @@ static void the_rounding_floor_ends_the_iteration_with_a_word(void **state)
     sl_patch_free(patch);
 }
 
-/* J by its product with a random vector against the residuals' differences, and M against what was promised of it. */
-static void the_matrices_shown_are_those_of_the_system(void **state)
-{
-    (void)state;
-    test_rng rng = test_rng_seed(0x3a);
-    sl_patch *patch = chart_grid(5, 4, 0.2, chart_bumps, 1.0, 0x3a);
-    const int32_t nc = 3 * patch->nt;
-    for (int form = 0; form < 3; form++) {
-        sl_sector_table table = make_sectors(patch, true);
-        sl_abf_def def = sl_abf_default();
-        def.sectors = &table.view;
-        def.wheel = (sl_abf_wheel)form;
-        sl_abf *solver = make_solver(patch, &def);
-        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
-        const sl_abf_sizes sizes = sl_abf_sizes_of(solver);
-        const int32_t n = sizes.triangles + sizes.sectors + sizes.wheels;
-        sl_csc *J;
-        assert_int_equal(sl_abf_jacobian(solver, &J), SL_OK);
-        assert_int_equal(sl_csc_check(J, false), SL_OK);
-        assert_true(J->nrows == n && J->ncols == nc && sizes.angles == nc && J->colptr[nc] == sizes.jacobian_nonzeros);
-        assert_true(sl_abf_schur(solver)->nrows == sizes.schur_rows && sizes.schur_rows == n - patch->nt);
-        assert_true(sl_abf_schur(solver)->colptr[sizes.schur_rows] == sizes.schur_nonzeros);
-        assert_true(sizes.factor_nonzeros >= sizes.schur_nonzeros);
-        double *x = malloc((size_t)nc * sizeof *x), *y = malloc((size_t)n * sizeof *y), *g[2];
-        for (int32_t c = 0; c < nc; c++) {
-            x[c] = test_uniform(&rng, -1.0, 1.0);
-        }
-        sl_csc_multiply(J, x, y);
-        for (int side = 0; side < 2; side++) {
-            double *at = malloc((size_t)nc * sizeof *at);
-            for (int32_t c = 0; c < nc; c++) {
-                at[c] = sl_abf_angles(solver)[c] + (side == 0 ? -1e-5 : 1e-5) * x[c];
-            }
-            g[side] = malloc((size_t)n * sizeof(double));
-            sl_abf_eval_g1(patch, at, g[side]);
-            sl_abf_eval_g2(&table.view, at, &g[side][patch->nt]);
-            sl_abf_eval_g3(patch, def.wheel, at, &g[side][patch->nt + sizes.sectors]);
-            free(at);
-        }
-        for (int32_t r = 0; r < n; r++) {
-            assert_true(test_near(y[r], (g[1][r] - g[0][r]) / 2e-5, 1e-7));
-        }
-        free(x);
-        free(y);
-        free(g[0]);
-        free(g[1]);
-        sl_csc_free(J);
-        sl_abf_free(solver);
-        sl_sectors_clear(&table);
-    }
-    sl_patch_free(patch);
-}
-
 /* With the gradient left out of account, g3 alone decides: it is the last to vanish. */
 static void convergence_waits_for_every_constraint(void **state)
 {
@@ -518,7 +465,6 @@ int main(void)
         cmocka_unit_test(a_singular_system_stalls_and_is_judged_by_its_residual),
         cmocka_unit_test(drags_start_from_the_present_angles),
         cmocka_unit_test(the_rounding_floor_ends_the_iteration_with_a_word),
-        cmocka_unit_test(the_matrices_shown_are_those_of_the_system),
         cmocka_unit_test(convergence_waits_for_every_constraint),
         cmocka_unit_test(a_prescribed_border_angle_is_met),
         cmocka_unit_test(an_iteration_limit_accepts_only_small_gradients),

@@ -2,6 +2,7 @@
 #include "param/abf_internal.h"
 
 #include "param/abf_charts.h"
+#include "param/abf_sectors.h"
 
 static const int32_t no_rows[1];
 
@@ -190,6 +191,60 @@ static void bad_sectors_leave_nothing_behind(void **state)
     sl_patch_free(patch);
 }
 
+/* J by its product with a random vector against the residuals' differences, and M against what was promised of it. */
+static void the_matrices_shown_are_those_of_the_system(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3a);
+    sl_patch *patch = chart_grid(5, 4, 0.2, chart_bumps, 1.0, 0x3a);
+    const int32_t nc = 3 * patch->nt;
+    for (int form = 0; form < 3; form++) {
+        sl_sector_table table = make_sectors(patch, true);
+        sl_abf_def def = sl_abf_default();
+        def.sectors = &table.view;
+        def.wheel = (sl_abf_wheel)form;
+        sl_abf *solver;
+        assert_int_equal(sl_abf_create(patch, &def, &solver), SL_OK);
+        assert_int_equal(sl_abf_step(solver, 1, NULL), SL_OK);
+        const sl_abf_sizes sizes = sl_abf_sizes_of(solver);
+        const int32_t n = sizes.triangles + sizes.sectors + sizes.wheels;
+        sl_csc *J;
+        assert_int_equal(sl_abf_jacobian(solver, &J), SL_OK);
+        assert_int_equal(sl_csc_check(J, false), SL_OK);
+        assert_true(J->nrows == n && J->ncols == nc && sizes.angles == nc && J->colptr[nc] == sizes.jacobian_nonzeros);
+        assert_true(sl_abf_schur(solver)->nrows == sizes.schur_rows && sizes.schur_rows == n - patch->nt);
+        assert_true(sl_abf_schur(solver)->colptr[sizes.schur_rows] == sizes.schur_nonzeros);
+        assert_true(sizes.factor_nonzeros >= sizes.schur_nonzeros);
+        double *x = malloc((size_t)nc * sizeof *x), *y = malloc((size_t)n * sizeof *y), *g[2];
+        for (int32_t c = 0; c < nc; c++) {
+            x[c] = test_uniform(&rng, -1.0, 1.0);
+        }
+        sl_csc_multiply(J, x, y);
+        for (int side = 0; side < 2; side++) {
+            double *at = malloc((size_t)nc * sizeof *at);
+            for (int32_t c = 0; c < nc; c++) {
+                at[c] = sl_abf_angles(solver)[c] + (side == 0 ? -1e-5 : 1e-5) * x[c];
+            }
+            g[side] = malloc((size_t)n * sizeof(double));
+            sl_abf_eval_g1(patch, at, g[side]);
+            sl_abf_eval_g2(&table.view, at, &g[side][patch->nt]);
+            sl_abf_eval_g3(patch, def.wheel, at, &g[side][patch->nt + sizes.sectors]);
+            free(at);
+        }
+        for (int32_t r = 0; r < n; r++) {
+            assert_true(test_near(y[r], (g[1][r] - g[0][r]) / 2e-5, 1e-7));
+        }
+        free(x);
+        free(y);
+        free(g[0]);
+        free(g[1]);
+        sl_csc_free(J);
+        sl_abf_free(solver);
+        sl_sectors_clear(&table);
+    }
+    sl_patch_free(patch);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +253,7 @@ int main(void)
         cmocka_unit_test(products_with_the_jacobian_are_adjoint),
         cmocka_unit_test(rows_stand_where_their_vertex_stands),
         cmocka_unit_test(bad_sectors_leave_nothing_behind),
+        cmocka_unit_test(the_matrices_shown_are_those_of_the_system),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
