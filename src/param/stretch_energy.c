@@ -4,6 +4,7 @@
 #include "geom/vec3.h"
 
 static const double HALF_ROOT = 0.70710678118654752440; /* 1 / sqrt(2) */
+static const double LEAST_SQUARE = 1e-280, MOST_SQUARE = 1e280;
 
 /* A 3D triangle is degenerate when its doubled area is at most this share of its longest edge squared (as distortion.h
  * says); it is then given the height RAISED_HEIGHT over that edge. */
@@ -19,6 +20,13 @@ static double determinant(const double J[4])
 static double squared_norm(const double J[4])
 {
     return J[0] * J[0] + J[1] * J[1] + J[2] * J[2] + J[3] * J[3];
+}
+
+/* sqrt(a^2 + b^2); the squares of what is neither tiny nor huge neither vanish nor overflow. */
+static double length_of(double a, double b)
+{
+    const double square = a * a + b * b;
+    return square > LEAST_SQUARE && square < MOST_SQUARE ? sqrt(square) : hypot(a, b);
 }
 
 double sl_stretch_density(double w, const double J[4])
@@ -41,11 +49,11 @@ void sl_stretch_density_gradient(double w, const double J[4], double P[4])
 /* Eigenpairs of [a c; c b]: lambda[0] >= lambda[1], unit vectors (x[0], y[0]) and (x[1], y[1]). */
 static void symmetric_eigen(double a, double b, double c, double lambda[2], double x[2], double y[2])
 {
-    const double half = 0.5 * (a - b), radius = hypot(half, c);
+    const double half = 0.5 * (a - b), radius = length_of(half, c);
     lambda[0] = 0.5 * (a + b) + radius;
     lambda[1] = 0.5 * (a + b) - radius;
     const double p = half >= 0.0 ? half + radius : c, q = half >= 0.0 ? c : radius - half;
-    const double n = hypot(p, q);
+    const double n = length_of(p, q);
     x[0] = n > 0.0 ? p / n : 1.0;
     y[0] = n > 0.0 ? q / n : 0.0;
     x[1] = -y[0];
@@ -57,7 +65,7 @@ static void symmetric_eigen(double a, double b, double c, double lambda[2], doub
 void sl_stretch_density_modes(double w, const double J[4], double lambda[4], double Q[16])
 {
     const double E = 0.5 * (J[0] + J[3]), F = 0.5 * (J[0] - J[3]), G = 0.5 * (J[2] + J[1]), H = 0.5 * (J[2] - J[1]);
-    const double same = hypot(E, H), mirrored = hypot(F, G);
+    const double same = length_of(E, H), mirrored = length_of(F, G);
     const double s1 = same + mirrored, d = determinant(J), s2 = d / s1, I = s1 * s1 + s2 * s2;
     const double ce = E / same, se = H / same;
     const double cf = mirrored > 0.0 ? F / mirrored : 1.0, sf = mirrored > 0.0 ? G / mirrored : 0.0;

@@ -6,12 +6,18 @@
  * J B = U diag(s^t) V': the same directions, with singular values within exp(+-cap). */
 bool sl_stretch_soften(double cap, double J[4], double g[4])
 {
-    const double d = J[0] * J[3] - J[1] * J[2];
+    if (isinf(cap)) {
+        return false;
+    }
+    const double d = J[0] * J[3] - J[1] * J[2], most = exp(cap);
     const double same = hypot(J[0] + J[3], J[2] - J[1]), mirrored = hypot(J[0] - J[3], J[2] + J[1]);
     const double s1 = 0.5 * (same + mirrored), s2 = d / s1;
+    if (s1 <= most && s2 * most >= 1.0) { /* s2 <= s1: most triangles, and no logarithm for them */
+        return false;
+    }
     const double l1 = log(s1), l2 = log(s2), far = fmax(fabs(l1), fabs(l2));
     if (!(far > cap)) {
-        return false;
+        return false; /* by rounding alone */
     }
     const double b1 = exp(l1 * (cap / far - 1.0)), b2 = exp(l2 * (cap / far - 1.0));
     /* V from J'J = [a b; b c]: its first column has the angle half of (a - c, 2 b)'s */

@@ -85,14 +85,60 @@ static void find_slots(const sl_patch *patch, const int64_t *first, const int64_
     }
 }
 
-/* A point per unknown for the ordering: its vertex. */
-static double *unknown_points(const sl_patch *patch)
+/* The order of elimination, found on the vertices: both unknowns of one follow each other. perm: 2 nv. */
+static sl_status order_unknowns(const sl_patch *patch, const int64_t *first, const int64_t *next, const int32_t *hi,
+                                int32_t *perm)
 {
-    double *xyz = sl_alloc(6 * (int64_t)patch->nv, sizeof *xyz);
-    for (int64_t i = 0; xyz != NULL && i < 6 * (int64_t)patch->nv; i++) {
-        xyz[i] = patch->xyz[3 * (i / 6) + i % 3];
+    sl_csc *graph = NULL;
+    int64_t nnz = patch->nv, p = 0;
+    for (int32_t v = 0; v < patch->nv; v++) {
+        nnz += next[v] - first[v];
     }
-    return xyz;
+    sl_status status = sl_csc_create(patch->nv, patch->nv, nnz, &graph);
+    if (status != SL_OK) {
+        return status;
+    }
+    for (int32_t v = 0; v < patch->nv; v++) {
+        graph->row[p++] = v;
+        for (int64_t i = first[v]; i < next[v]; i++) {
+            graph->row[p++] = hi[i];
+        }
+        graph->colptr[v + 1] = p;
+    }
+    memset(graph->val, 0, (size_t)nnz * sizeof *graph->val);
+    status = sl_order(graph, SL_ORDER_AUTO, patch->xyz, perm);
+    for (int32_t k = patch->nv; k-- > 0 && status == SL_OK;) { /* backwards: perm[k] is read before it is overwritten */
+        const int32_t v = perm[k];
+        perm[2 * (int64_t)k] = 2 * v;
+        perm[2 * (int64_t)k + 1] = 2 * v + 1;
+    }
+    sl_csc_free(graph);
+    return status;
+}
+
+/* The pattern of H, empty, and its factor's analysis. */
+static sl_status analyze(const sl_patch *patch, const int64_t *first, const int64_t *next, const int32_t *hi,
+                         sl_stretch_system *system)
+{
+    sl_status status = SL_OK;
+    int64_t nnz = 3 * (int64_t)patch->nv;
+    int32_t *perm = sl_alloc(patch->nv, 2 * sizeof *perm);
+    if (perm == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t v = 0; v < patch->nv; v++) {
+        nnz += 4 * (next[v] - first[v]);
+    }
+    SL_TRY(sl_csc_create(2 * patch->nv, 2 * patch->nv, nnz, &system->H));
+    fill_pattern(first, next, hi, system->H);
+    memset(system->H->val, 0, (size_t)nnz * sizeof *system->H->val);
+    SL_TRY(order_unknowns(patch, first, next, hi, perm));
+    sl_cholesky_def def = sl_cholesky_default();
+    def.perm = perm;
+    SL_TRY(sl_cholesky_analyze(system->H, &def, &system->factor));
+cleanup:
+    sl_free(perm);
+    return status;
 }
 
 sl_status sl_stretch_system_init(const sl_patch *patch, sl_stretch_system *system)
@@ -102,31 +148,20 @@ sl_status sl_stretch_system_init(const sl_patch *patch, sl_stretch_system *syste
     int64_t *first = sl_calloc((int64_t)patch->nv + 1, sizeof *first);
     int64_t *next = sl_calloc((int64_t)patch->nv + 1, sizeof *next);
     int32_t *hi = sl_alloc(3 * (int64_t)patch->nt, sizeof *hi);
-    double *xyz = unknown_points(patch);
     system->slot = sl_alloc(3 * (int64_t)patch->nt, sizeof *system->slot);
-    if (first == NULL || next == NULL || hi == NULL || xyz == NULL || system->slot == NULL) {
+    if (first == NULL || next == NULL || hi == NULL || system->slot == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
     neighbours_above(patch, first, hi, next);
-    int64_t nnz = 3 * (int64_t)patch->nv;
-    for (int32_t v = 0; v < patch->nv; v++) {
-        nnz += 4 * (next[v] - first[v]);
-    }
-    SL_TRY(sl_csc_create(2 * patch->nv, 2 * patch->nv, nnz, &system->H));
-    fill_pattern(first, next, hi, system->H);
-    memset(system->H->val, 0, (size_t)nnz * sizeof *system->H->val);
+    SL_TRY(analyze(patch, first, next, hi, system));
     find_slots(patch, first, next, hi, system->H, system->slot);
-    sl_cholesky_def def = sl_cholesky_default();
-    def.xyz = xyz;
-    SL_TRY(sl_cholesky_analyze(system->H, &def, &system->factor));
     system->work = sl_alloc(sl_cholesky_work_size(system->factor, 1), sizeof *system->work);
     status = system->work == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 cleanup:
     sl_free(first);
     sl_free(next);
     sl_free(hi);
-    sl_free(xyz);
     if (status != SL_OK) {
         sl_stretch_system_clear(system);
     }
@@ -152,23 +187,49 @@ static void pull_back(const double Q[4], const double g[4], double q[6])
     }
 }
 
-/* The projected 6 x 6 Hessian of one triangle. */
-static void element_hessian(double w, double weight, const double J[4], const double g[4], double K[6][6])
+/* The projected 4 x 4 Hessian of a triangle's energy in J, times its weight. */
+static void density_hessian(double w, double weight, const double J[4], double H[4][4])
 {
     double lambda[4], Q[16];
     sl_stretch_density_modes(w, J, lambda, Q);
-    memset(K, 0, 36 * sizeof K[0][0]);
+    memset(H, 0, 16 * sizeof H[0][0]);
     for (int m = 0; m < 4; m++) {
-        if (!(lambda[m] > 0.0)) {
-            continue;
-        }
-        double q[6];
-        pull_back(&Q[4 * m], g, q);
-        for (int i = 0; i < 6; i++) {
-            const double scaled = weight * lambda[m] * q[i];
-            for (int j = 0; j < 6; j++) {
-                K[i][j] += scaled * q[j];
+        const double positive = lambda[m] > 0.0 ? weight * lambda[m] : 0.0;
+        for (int i = 0; i < 4; i++) {
+            const double scaled = positive * Q[4 * m + i];
+            for (int j = 0; j < 4; j++) {
+                H[i][j] += scaled * Q[4 * m + j];
             }
+        }
+    }
+}
+
+/* The projected 6 x 6 Hessian of one triangle in its corners' places: of corners 1 and 2 by the chain rule through
+ * J = ... + p_1 g_1' + p_2 g_2', of corner 0 from its rows adding up to zero. */
+static void element_hessian(double w, double weight, const double J[4], const double g[4], double K[6][6])
+{
+    double H[4][4], half[4][4]; /* half: rows of corners 1 and 2, columns of J */
+    density_hessian(w, weight, J, H);
+    for (int i = 0; i < 4; i++) {
+        const int row = 2 * (i % 2), k = i - i % 2;
+        for (int j = 0; j < 4; j++) {
+            half[i][j] = g[k] * H[row][j] + g[k + 1] * H[row + 1][j];
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int s = 0; s < 2; s++) {
+            K[2 + i][2 + s] = half[i][2 * s] * g[0] + half[i][2 * s + 1] * g[1];
+            K[2 + i][4 + s] = half[i][2 * s] * g[2] + half[i][2 * s + 1] * g[3];
+        }
+    }
+    for (int i = 2; i < 6; i++) {
+        for (int s = 0; s < 2; s++) {
+            K[i][s] = K[s][i] = -(K[i][2 + s] + K[i][4 + s]);
+        }
+    }
+    for (int r = 0; r < 2; r++) {
+        for (int s = 0; s < 2; s++) {
+            K[r][s] = -(K[r][2 + s] + K[r][4 + s]);
         }
     }
 }
