@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+enum { AHEAD = 64 }; /* triangles whose corners are asked for before they are needed: halves the time of a million */
+
 static bool finite_uv(const double *uv, int64_t n, const int32_t *vertex)
 {
     for (int64_t k = 0; k < n; k++) {
@@ -24,6 +26,11 @@ static bool count_orientations(const double *uv, int32_t nt, const int32_t *tri,
         const int32_t *corner = tri + 3 * (int64_t)t;
         const double *a = uv + 2 * (int64_t)corner[0], *b = uv + 2 * (int64_t)corner[1];
         const double *c = uv + 2 * (int64_t)corner[2];
+        if (t < nt - 2 * AHEAD) {
+            __builtin_prefetch(corner + 3 * 2 * AHEAD);
+            __builtin_prefetch(uv + 2 * (int64_t)corner[3 * AHEAD]);
+            __builtin_prefetch(uv + 2 * (int64_t)corner[3 * AHEAD + 2]);
+        }
         int sign = sl_orient2d_sure(a, b, c);
         if (sign == 0) {
             if (!finite_uv(uv, 3, corner)) {

@@ -81,6 +81,37 @@ static void orientation_of_nearly_collinear_points_is_exact_at_every_scale(void 
     assert_true(seen[0] > 1000 && seen[1] > 1000 && seen[2] > 1000);
 }
 
+/* The filter may be unsure but never wrong; where it is unsure, the exact sign stands in. */
+static void the_filter_is_unsure_rather_than_wrong(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xf117);
+    int sure_of = 0, unsure = 0;
+    for (int trial = 0; trial < 200000 * test_multiplier(); trial++) {
+        int64_t p[3][2];
+        double q[3][2];
+        if (trial % 4 != 0) {
+            near_collinear(&rng, p);
+        }
+        for (int k = 0; k < 3; k++) {
+            for (int a = 0; a < 2; a++) {
+                p[k][a] = trial % 4 == 0 ? random_integer(&rng, 53) : p[k][a];
+                q[k][a] = ldexp((double)p[k][a], trial % 3 == 0 ? -520 : -53); /* products that underflow, too */
+            }
+        }
+        const int expected = integer_orientation(p), sure = sl_orient2d_sure(q[0], q[1], q[2]);
+        assert_true(sure == 0 || sure == expected);
+        assert_int_equal(sl_orient2d_quick(q[0], q[1], q[2]), expected);
+        sure_of += sure != 0;
+        unsure += sure == 0 && expected != 0;
+    }
+    assert_true(sure_of > 1000 && unsure > 1000);
+    const double bad[3][2] = {{0.1, 0.2}, {NAN, 0.7}, {0.4, INFINITY}}, good[2] = {0.9, -0.4};
+    assert_int_equal(sl_orient2d_sure(bad[0], bad[1], good), 0);
+    assert_int_equal(sl_orient2d_sure(bad[2], good, bad[0]), 0);
+    assert_int_equal(sl_orient2d_sure(good, bad[0], bad[2]), 0);
+}
+
 /* Kettner et al. 2008, "Classroom examples of robustness problems": points one ulp apart beside the line y = x. */
 static void orientation_on_a_lattice_of_ulps_is_exact(void **state)
 {
@@ -231,6 +262,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orientation_of_random_integer_points_is_exact),
         cmocka_unit_test(orientation_of_nearly_collinear_points_is_exact_at_every_scale),
+        cmocka_unit_test(the_filter_is_unsure_rather_than_wrong),
         cmocka_unit_test(orientation_on_a_lattice_of_ulps_is_exact),
         cmocka_unit_test(orientation_is_exact_for_points_of_very_different_size),
         cmocka_unit_test(orientation_changes_sign_when_two_points_are_swapped),
