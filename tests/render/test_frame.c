@@ -1,0 +1,338 @@
+#include "render/render_support.h"
+
+#include "render/frame.h"
+
+enum { SIDE = 150 };
+
+/* A frame of the torus with colours and UVs. */
+typedef struct torus_frame {
+    sl_mesh *mesh;
+    sl_triangulation *triangulation;
+    int32_t *tri;
+    double *uv;
+    uint8_t *rgb;
+    sl_frame *frame;
+    sl_camera camera;
+} torus_frame;
+
+static torus_frame open_torus(double azimuth)
+{
+    torus_frame t = {.mesh = torus(40, 23)};
+    assert_int_equal(sl_triangulation_create(t.mesh, &t.triangulation), SL_OK);
+    const int32_t nt = t.triangulation->nt;
+    t.tri = sl_alloc(nt, 3 * sizeof *t.tri);
+    t.uv = sl_alloc(nt, 6 * sizeof *t.uv);
+    t.rgb = sl_alloc(nt, 3);
+    for (int32_t i = 0; i < 3 * nt; i++) {
+        const double *p = t.mesh->xyz + 3 * t.mesh->origin[t.triangulation->corner[i]];
+        t.tri[i] = t.mesh->origin[t.triangulation->corner[i]];
+        t.uv[2 * i] = 0.4 * p[0] + 0.3 * p[1];
+        t.uv[2 * i + 1] = 0.5 * p[2] - 0.2 * p[1];
+        t.rgb[i] = (uint8_t)(90 + 37 * i % 130);
+    }
+    const sl_frame_def def = {t.mesh->nv, nt, t.mesh->xyz, t.tri, t.uv, t.rgb};
+    assert_int_equal(sl_frame_create(&def, &t.frame), SL_OK);
+    sl_view view = sl_view_default();
+    view.azimuth = azimuth;
+    assert_int_equal(sl_camera_frame(&view, 1.3, t.mesh->nv, NULL, t.mesh->xyz, &t.camera), SL_OK);
+    return t;
+}
+
+static void close_torus(torus_frame *t)
+{
+    sl_frame_free(t->frame);
+    sl_free(t->tri);
+    sl_free(t->uv);
+    sl_free(t->rgb);
+    sl_triangulation_free(t->triangulation);
+    sl_mesh_free(t->mesh);
+}
+
+/* Nearest triangle by the ray through a pixel's centre; -2 where an edge is so near that rounding decides. */
+static int32_t trace(const torus_frame *t, int32_t width, int32_t height, int32_t x, int32_t y, double bary[3])
+{
+    double origin[3], direction[3], nearest = INFINITY;
+    int32_t found = -1;
+    bool close = false;
+    sl_camera_ray(&t->camera, width, height, x + 0.5, y + 0.5, origin, direction);
+    for (int32_t i = 0; i < t->triangulation->nt; i++) {
+        double p[3][3], b[3], z = 0.0;
+        for (int k = 0; k < 3; k++) {
+            sl_camera_to_eye(&t->camera, t->mesh->xyz + 3 * t->tri[3 * i + k], p[k]);
+        }
+        double sum = 0.0, least = INFINITY, most = -INFINITY; /* on the plane z = 1 of the picture */
+        for (int k = 0; k < 3; k++) {
+            const double *q = p[(k + 1) % 3], *r = p[(k + 2) % 3];
+            b[k] = ((q[0] / q[2] - direction[0]) * (r[1] / r[2] - direction[1]) -
+                    (r[0] / r[2] - direction[0]) * (q[1] / q[2] - direction[1])) /
+                   p[k][2];
+            sum += b[k];
+        }
+        for (int k = 0; k < 3; k++) {
+            b[k] /= sum;
+            least = fmin(least, b[k]);
+            most = fmax(most, b[k]);
+            z += b[k] * p[k][2];
+        }
+        if (least > -0.04 && most < 1.04 && z < nearest + 1e-3) {
+            close = close || least < 0.04;
+        }
+        if (least >= 0.0 && z < nearest) {
+            nearest = z;
+            found = i;
+            memcpy(bary, b, sizeof b);
+        }
+    }
+    return close ? -2 : found;
+}
+
+static void picking_finds_the_triangle_that_a_ray_meets_first(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x91c);
+    int32_t compared = 0, empty = 0;
+    for (int trial = 0; trial < 3; trial++) {
+        torus_frame t = open_torus(test_uniform(&rng, 0.0, 360.0));
+        const sl_frame_style style = sl_frame_style_default();
+        const int32_t width = 390, height = 300;
+        uint8_t *rgba = sl_alloc(width * height, 4);
+        assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, width, height, NULL, rgba), SL_OK);
+        for (int i = 0; i < 300 * test_multiplier(); i++) {
+            const int32_t x = test_index(&rng, width), y = test_index(&rng, height);
+            double bary[3];
+            const int32_t expected = trace(&t, width, height, x, y, bary);
+            const sl_frame_hit hit = sl_frame_pick(t.frame, x, y);
+            if (expected == -2) {
+                continue;
+            }
+            assert_int_equal(hit.triangle, expected);
+            compared += expected >= 0;
+            empty += expected < 0;
+            for (int k = 0; k < 3 && expected >= 0; k++) {
+                assert_true(fabs(hit.bary[k] - bary[k]) < 1e-9);
+            }
+        }
+        assert_int_equal(sl_frame_pick(t.frame, -1, 3).triangle, -1);
+        assert_int_equal(sl_frame_pick(t.frame, 3, height).triangle, -1);
+        sl_free(rgba);
+        close_torus(&t);
+    }
+    assert_true(compared > 100 && empty > 50);
+}
+
+static void a_frame_has_the_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    torus_frame t = open_torus(77.0);
+    const int32_t lines[] = {3, 4, 4, 5, 5, 45, 200, 201, 201, 202};
+    const uint8_t ink[3] = {20, 20, 120};
+    assert_int_equal(sl_frame_set_lines(t.frame, 2, 5, lines, ink, 2.3), SL_OK);
+    uint8_t *first = sl_alloc(SIDE * SIDE, 4), *again = sl_alloc(SIDE * SIDE, 4);
+    for (int flat = 0; flat < 2; flat++) {
+        sl_frame_style style = sl_frame_style_default();
+        style.flat = flat != 0;
+        assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, SIDE, SIDE, NULL, first), SL_OK);
+        for (int32_t workers = 1; workers <= 5; workers++) {
+            sl_thread_pool *pool = NULL;
+            assert_int_equal(sl_thread_pool_create(workers, &pool), SL_OK);
+            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            memset(again, workers, 4 * SIDE * SIDE);
+            assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, SIDE, SIDE, &context, again), SL_OK);
+            assert_memory_equal(first, again, 4 * SIDE * SIDE);
+            sl_thread_pool_free(pool);
+        }
+    }
+    sl_free(first);
+    sl_free(again);
+    close_torus(&t);
+}
+
+static int32_t count_hits(const sl_frame *frame, int32_t width, int32_t height)
+{
+    int32_t hits = 0;
+    for (int32_t i = 0; i < width * height; i++) {
+        hits += sl_frame_pick(frame, i % width, i / width).triangle >= 0;
+    }
+    return hits;
+}
+
+/* Inside a closed surface there is something wherever one looks, also where triangles reach behind the eye. */
+static void from_inside_of_a_cube_every_pixel_shows_a_wall(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xc0be);
+    double xyz[24];
+    static const int32_t quad[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    int32_t tri[36];
+    for (int i = 0; i < 24; i++) {
+        xyz[i] = (i / 3 >> (i % 3) & 1) != 0 ? 1.0 : 0.0;
+    }
+    for (int f = 0; f < 6; f++) {
+        const int32_t two[6] = {quad[f][0], quad[f][1], quad[f][2], quad[f][0], quad[f][2], quad[f][3]};
+        memcpy(tri + 6 * f, two, sizeof two);
+    }
+    const sl_frame_def def = {8, 12, xyz, tri, NULL, NULL};
+    sl_frame *frame = NULL;
+    assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+    uint8_t rgba[4 * 60 * 40];
+    sl_frame_style style = sl_frame_style_default();
+    for (int trial = 0; trial < 50 * test_multiplier(); trial++) {
+        sl_view view = sl_view_default();
+        sl_camera camera;
+        view.azimuth = test_uniform(&rng, 0.0, 360.0);
+        view.elevation = test_uniform(&rng, -80.0, 80.0);
+        view.fov = 70.0;
+        assert_int_equal(sl_camera_frame(&view, 1.5, 8, NULL, xyz, &camera), SL_OK);
+        for (int k = 0; k < 3; k++) {
+            camera.eye[k] = test_uniform(&rng, 0.2, 0.8);
+        }
+        camera.near_depth = 1e-3;
+        style.cull = false;
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 60, 40, NULL, rgba), SL_OK);
+        assert_int_equal(count_hits(frame, 60, 40), 60 * 40);
+        style.cull = true; /* the walls turn their backs */
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 60, 40, NULL, rgba), SL_OK);
+        assert_int_equal(count_hits(frame, 60, 40), 0);
+    }
+    sl_frame_free(frame);
+}
+
+static void culling_changes_no_pixel_of_a_closed_surface(void **state)
+{
+    (void)state;
+    torus_frame t = open_torus(200.0);
+    sl_frame_style style = sl_frame_style_default();
+    uint8_t *all = sl_alloc(SIDE * SIDE, 4), *front = sl_alloc(SIDE * SIDE, 4);
+    assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, SIDE, SIDE, NULL, all), SL_OK);
+    style.cull = true;
+    assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, SIDE, SIDE, NULL, front), SL_OK);
+    int32_t different = 0;
+    for (int32_t i = 0; i < SIDE * SIDE; i++) {
+        different += memcmp(all + 4 * i, front + 4 * i, 4) != 0;
+    }
+    assert_true(different < 20); /* where a facet is seen edge-on at the outline */
+    sl_free(all);
+    sl_free(front);
+    close_torus(&t);
+}
+
+/* Two squares, one before the other; a line between them is hidden by the nearer one only. */
+static void lines_are_hidden_by_what_is_nearer(void **state)
+{
+    (void)state;
+    static const double xyz[] = {-1,  -1,   0,  0,   -1,  0,  0,    1,   0,  -1,   1,    0,    -1.2, -1.2, -1,
+                                 1.2, -1.2, -1, 1.2, 1.2, -1, -1.2, 1.2, -1, -0.9, 0.05, -0.5, 0.9,  0.05, -0.5};
+    static const int32_t tri[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+    const sl_frame_def def = {10, 4, xyz, tri, NULL, NULL};
+    const sl_camera camera = {.eye = {0, 0, 5},
+                              .right = {1, 0, 0},
+                              .up = {0, 1, 0},
+                              .forward = {0, 0, -1},
+                              .centre = {0.5, 0.5},
+                              .focal = 2.0,
+                              .near_depth = 0.1,
+                              .perspective = true};
+    static const int32_t pair[] = {8, 9};
+    static const uint8_t red[3] = {255, 0, 0};
+    sl_frame *frame = NULL;
+    uint8_t bare[4 * 101 * 101], lined[4 * 101 * 101];
+    const sl_frame_style style = sl_frame_style_default();
+    assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+    assert_int_equal(sl_frame_draw(frame, &camera, &style, 101, 101, NULL, bare), SL_OK);
+    assert_int_equal(sl_frame_set_lines(frame, 0, 1, pair, red, 2.0), SL_OK);
+    assert_int_equal(sl_frame_draw(frame, &camera, &style, 101, 101, NULL, lined), SL_OK);
+    int32_t left = 0, right = 0;
+    for (int32_t i = 0; i < 101 * 101; i++) {
+        const bool changed = memcmp(bare + 4 * i, lined + 4 * i, 4) != 0;
+        left += changed && i % 101 < 48;
+        right += changed && i % 101 > 52;
+    }
+    assert_int_equal(left, 0);
+    assert_true(right > 40 && right < 300);
+    assert_int_equal(sl_frame_set_lines(frame, 0, 0, NULL, red, 2.0), SL_OK);
+    assert_int_equal(sl_frame_draw(frame, &camera, &style, 101, 101, NULL, lined), SL_OK);
+    assert_memory_equal(bare, lined, sizeof bare);
+    sl_frame_free(frame);
+}
+
+static void strange_numbers_and_sizes_behave(void **state)
+{
+    (void)state;
+    static const double odd[] = {NAN, INFINITY, -INFINITY, 1e300, 1e-300, 0.0, -3.7e8, 2.0};
+    test_rng rng = test_rng_seed(0x0dd);
+    double xyz[90], uv[6 * 40];
+    int32_t tri[3 * 40];
+    uint8_t *rgba = sl_alloc(16384, 4 * 2);
+    for (int trial = 0; trial < 200 * test_multiplier(); trial++) {
+        for (int i = 0; i < 90; i++) {
+            xyz[i] = test_index(&rng, 6) == 0 ? odd[test_index(&rng, 8)] : test_uniform(&rng, -1.0, 1.0);
+        }
+        for (int i = 0; i < 240; i++) {
+            uv[i] = test_index(&rng, 3) == 0 ? odd[test_index(&rng, 8)] : test_uniform(&rng, -1.0, 1.0);
+        }
+        for (int i = 0; i < 120; i++) {
+            tri[i] = test_index(&rng, 30);
+        }
+        const sl_frame_def def = {30, 40, xyz, tri, uv, NULL};
+        sl_frame *frame = NULL;
+        sl_view view = sl_view_default();
+        sl_camera camera;
+        view.fov = trial % 2 != 0 ? 24.0 : 0.0;
+        assert_int_equal(sl_camera_frame(&view, 1.0, 30, NULL, xyz, &camera), SL_OK);
+        assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+        const sl_frame_style style = sl_frame_style_default();
+        const int32_t width = 1 + test_index(&rng, 40), height = 1 + test_index(&rng, 40);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, width, height, NULL, rgba), SL_OK);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 16384, 2, NULL, rgba), SL_OK);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 1, 1, NULL, rgba), SL_OK);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 0, 5, NULL, rgba), SL_BAD_INPUT);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, 5, 16385, NULL, rgba), SL_BAD_INPUT);
+        sl_frame_free(frame);
+    }
+    sl_frame *none = NULL;
+    const sl_frame_def empty = {0, 0, NULL, NULL, NULL, NULL};
+    const sl_camera plan = sl_camera_plan(0.0, 0.0, 1.0, 1.0);
+    const sl_frame_style style = sl_frame_style_default();
+    assert_int_equal(sl_frame_create(&empty, &none), SL_OK);
+    assert_int_equal(sl_frame_draw(none, &plan, &style, 3, 3, NULL, rgba), SL_OK);
+    assert_true(rgba[0] == 246 && rgba[2] == 244 && rgba[35] == 255);
+    sl_frame_free(none);
+    sl_free(rgba);
+}
+
+static void arguments_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    static const double xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const int32_t good[3] = {0, 1, 2}, bad[3] = {0, 1, 3}, negative[3] = {0, -1, 2};
+    static const uint8_t ink[3] = {0, 0, 0};
+    sl_frame *frame = NULL;
+    sl_frame_def def = {3, 1, xyz, bad, NULL, NULL};
+    assert_int_equal(sl_frame_create(&def, &frame), SL_BAD_INPUT);
+    def.tri = negative;
+    assert_int_equal(sl_frame_create(&def, &frame), SL_BAD_INPUT);
+    assert_null(frame);
+    def.tri = good;
+    assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+    assert_int_equal(sl_frame_set_lines(frame, 8, 1, good, ink, 1.0), SL_BAD_INPUT);
+    assert_int_equal(sl_frame_set_lines(frame, 0, 1, bad + 1, ink, 1.0), SL_BAD_INPUT);
+    assert_int_equal(sl_frame_set_lines(frame, 0, 1, good, ink, 0.0), SL_BAD_INPUT);
+    assert_int_equal(sl_frame_set_lines(frame, 0, 1, good, ink, (double)NAN), SL_BAD_INPUT);
+    assert_int_equal(sl_frame_pick(frame, 0, 0).triangle, -1);
+    sl_frame_free(frame);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(picking_finds_the_triangle_that_a_ray_meets_first),
+        cmocka_unit_test(a_frame_has_the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(from_inside_of_a_cube_every_pixel_shows_a_wall),
+        cmocka_unit_test(culling_changes_no_pixel_of_a_closed_surface),
+        cmocka_unit_test(lines_are_hidden_by_what_is_nearer),
+        cmocka_unit_test(strange_numbers_and_sizes_behave),
+        cmocka_unit_test(arguments_out_of_range_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
