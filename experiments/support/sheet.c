@@ -122,3 +122,23 @@ void exp_sheet_window(const exp_sheet *sheet, const double *uv, double window[3]
     window[1] = 0.5 * (lo[1] + hi[1] - side);
     window[2] = side;
 }
+
+int32_t exp_sheet_widest(const exp_sheet *sheet, const double *alpha)
+{
+    const sl_patch *p = sheet->patch;
+    int32_t best = -1;
+    double widest = 0.0;
+    for (int32_t v = 0; v < p->nv; v++) {
+        double sum = 0.0;
+        int32_t triangles = 0;
+        for (int32_t c = p->border[v] ? p->outgoing[v] : -1; c >= 0; c = sl_corner_rotate(p, c)) {
+            sum += alpha[c];
+            triangles++;
+        }
+        if (triangles >= 4 && sum > widest) {
+            widest = sum;
+            best = v;
+        }
+    }
+    return best;
+}

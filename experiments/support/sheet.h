@@ -61,6 +61,10 @@ SL_NODISCARD sl_status exp_wish_line(exp_run *run, const exp_sheet *sheet, const
 /* Border vertices in order, counter-clockwise; *vertex is owned (sl_free). */
 SL_NODISCARD sl_status exp_sheet_border(const exp_sheet *sheet, int32_t **vertex, int32_t *count);
 
+/* The border vertex, of at least four triangles, where the chart with these angles is widest open inside: between two
+ * limbs. -1 = none. */
+int32_t exp_sheet_widest(const exp_sheet *sheet, const double *alpha);
+
 /* How a solve ended. */
 typedef struct exp_solution {
     sl_abf_chart_info info;
@@ -89,7 +93,8 @@ typedef struct exp_drawing {
     const double *window;
     const uint8_t *tint;
     int32_t width, height;
-    bool model; /* the model beside it */
+    bool model;    /* the model beside it */
+    double radius; /* of the dots, pixels; 0 = as usual */
     const char *file;
 } exp_drawing;
 

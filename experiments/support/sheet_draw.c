@@ -116,7 +116,8 @@ sl_status exp_sheet_draw(exp_run *run, const exp_sheet *sheet, const double *uv,
     SL_TRY(collect(sheet, wish, &d));
     const sl_edge_layer layers[] = {{d.borders, d.border, {0, 0, 0}, border_width},
                                     {d.halfedges, d.halfedge, {blue[0], blue[1], blue[2]}, line_width}};
-    const sl_dot_layer dots = {d.dots, d.dot, {yellow[0], yellow[1], yellow[2]}, dot_radius};
+    const sl_dot_layer dots = {
+        d.dots, d.dot, {yellow[0], yellow[1], yellow[2]}, what->radius > 0.0 ? what->radius : dot_radius};
     sl_scene scene = sl_scene_default();
     scene.mesh = sheet->mesh;
     scene.triangulation = sheet->triangulation;
