@@ -38,22 +38,31 @@ void sl_lanczos_summarise(sl_lanczos *s)
     info->converged = info->converged_count == s->count && s->stage == SL_STAGE_DONE;
 }
 
-/* Columns of `from` with unknowns as in A, column-major: a panel's lanes together, as they lie. */
-static void copy_columns(const sl_lanczos *s, const sl_panels *from, int32_t columns, double *to)
+/* Panels of `from` on their way to the caller's columns. */
+typedef struct copying {
+    const sl_lanczos *solver;
+    const sl_panels *from;
+    int32_t columns;
+    double *to;
+} copying;
+
+/* Columns with unknowns as in A, column-major: a panel's lanes together, as they lie. */
+static void copy_panel(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
-    const int64_t n = s->n;
-    for (int32_t first = 0; first < columns; first += SL_PANEL) {
-        const double *panel = sl_panel_at(from, first / SL_PANEL);
-        const int32_t lanes = columns - first < SL_PANEL ? columns - first : SL_PANEL;
-        double *block = to + n * first;
-        for (int64_t i = 0; i < n; i++) {
-            for (int32_t c = 0; c < lanes; c++) {
-                block[n * c + s->perm[i]] = panel[i * SL_PANEL + c];
-            }
+    (void)end, (void)chunk;
+    const copying *c = user;
+    const int64_t n = c->solver->n;
+    const int32_t first = (int32_t)begin * SL_PANEL, left = c->columns - first;
+    const int32_t lanes = left < SL_PANEL ? left : SL_PANEL;
+    const double *panel = sl_panel_at(c->from, (int32_t)begin);
+    double *block = c->to + n * first;
+    for (int64_t i = 0; i < n; i++) {
+        for (int32_t k = 0; k < lanes; k++) {
+            block[n * k + c->solver->perm[i]] = panel[i * SL_PANEL + k];
         }
     }
-    for (int32_t k = 0; k < columns; k++) {
-        sl_lanczos_sign_rule(s->n, to + n * k);
+    for (int32_t k = 0; k < lanes; k++) {
+        sl_lanczos_sign_rule(c->solver->n, block + n * k);
     }
 }
 
@@ -86,7 +95,8 @@ void sl_lanczos_result(const sl_lanczos *s, double *lambda, double *vectors, dou
         memset(computed, 0, (size_t)s->n * (size_t)s->wanted * sizeof *computed);
         return;
     }
-    copy_columns(s, &s->X, s->wanted, computed);
+    copying job = {s, &s->X, s->wanted, computed};
+    sl_parallel_for(s->context, sl_panel_count(s->wanted), 1, copy_panel, &job);
     for (int32_t k = 0; k < s->wanted; k++) {
         lambda[s->null_count + k] = s->lambda[k];
         if (residual != NULL) {

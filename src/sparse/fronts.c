@@ -199,19 +199,10 @@ static void update_some(void *user, int64_t begin, int64_t end, int32_t chunk)
     f->kernels->update(f->panel, f->width, f->below, f->sign, f->spare, (int32_t)begin, (int32_t)end, f->U);
 }
 
-/* Products with signs need room of their own: only fronts without are shared. */
 static const sl_context *sharing(const walker *w, const shared_front *f)
 {
     const double height = (double)f->width + f->below;
-    if (w->context == NULL || f->width * height * height < shared_work) {
-        return NULL;
-    }
-    for (int32_t k = 0; k < f->width && f->sign != NULL; k++) {
-        if (f->sign[k] < 0) {
-            return NULL;
-        }
-    }
-    return w->context;
+    return f->width * height * height < shared_work ? NULL : w->context;
 }
 
 static int32_t factor_panel(const walker *w, shared_front *f, sl_pivoting pivoting)

@@ -86,7 +86,7 @@ typedef struct sl_kernels {
 
 static inline int64_t sl_front_spare(int32_t width)
 {
-    return 3 * SL_SLAB * ((int64_t)width + SL_SLAB) + 2 * SL_SLAB * SL_KERNEL_DEPTH;
+    return 3 * SL_SLAB * ((int64_t)width + SL_SLAB);
 }
 
 static inline int32_t sl_slab_pairs(int32_t below)

@@ -15,7 +15,6 @@ typedef struct front {
     int32_t own_slabs, below_slabs;
     double *own_tail, *below_tail;
     double *factor; /* width x 8: a slab times the signs of D */
-    double *pair;   /* the same for two slabs, SL_KERNEL_DEPTH columns */
     int8_t *sign;
 } front;
 
@@ -30,7 +29,6 @@ SL_KERNEL front front_at(double *panel, int32_t width, int32_t below, int8_t *si
     f.own_tail = spare;
     f.below_tail = spare + room;
     f.factor = spare + 2 * room;
-    f.pair = spare + 3 * room;
     return f;
 }
 
@@ -259,8 +257,9 @@ SL_KERNEL void subtract_product(const front *f, int32_t begin, int32_t end, int3
     const bool two = h + 1 < f->own_slabs + f->below_slabs;
     const int32_t last = h + two < f->own_slabs ? h + two : f->own_slabs - 1;
     double *slab0 = any_slab(f, h), *slab1 = two ? any_slab(f, h + 1) : slab0;
-    const double *a0 = signed_slab(slab0, f->sign, begin, end, f->pair);
-    const double *a1 = two ? signed_slab(slab1, f->sign, begin, end, f->pair + SL_SLAB * SL_KERNEL_DEPTH) : a0;
+    double pair[2 * SL_SLAB * SL_KERNEL_DEPTH]; /* of this worker */
+    const double *a0 = signed_slab(slab0, f->sign, begin, end, pair);
+    const double *a1 = two ? signed_slab(slab1, f->sign, begin, end, pair + SL_SLAB * SL_KERNEL_DEPTH) : a0;
     for (int32_t g = end / SL_SLAB; g <= last; g++) {
         const int32_t left = f->width - g * SL_SLAB, columns = left < SL_SLAB ? left : SL_SLAB;
         const double *b = own_slab(f, g) + (int64_t)begin * SL_SLAB;
@@ -361,15 +360,16 @@ SL_KERNEL_ENTRY void front_update(const double *panel, int32_t width, int32_t be
                                   int32_t begin, int32_t end, double *U)
 {
     const front f = front_at((double *)(uintptr_t)panel, width, below, NULL, spare); /* the panel is only read */
+    double pair[2 * SL_SLAB * SL_KERNEL_DEPTH];                                      /* of this worker */
     vec sum0[SL_SLAB], sum1[SL_SLAB];
     for (int32_t k = 0; k < width; k += SL_KERNEL_DEPTH) {
         const int32_t stop = k + SL_KERNEL_DEPTH < width ? k + SL_KERNEL_DEPTH : width;
         for (int32_t p = begin; p < end; p++) {
             const int32_t g = 2 * p;
             const bool two = g + 1 < f.below_slabs;
-            const double *a0 = signed_slab(below_slab(&f, g), sign, k, stop, f.pair);
+            const double *a0 = signed_slab(below_slab(&f, g), sign, k, stop, pair);
             const double *a1 =
-                two ? signed_slab(below_slab(&f, g + 1), sign, k, stop, f.pair + SL_SLAB * SL_KERNEL_DEPTH) : a0;
+                two ? signed_slab(below_slab(&f, g + 1), sign, k, stop, pair + SL_SLAB * SL_KERNEL_DEPTH) : a0;
             product_1(a0, below_slab(&f, g) + (int64_t)k * SL_SLAB, stop - k, sum0);
             subtract_edge(U, below, g, g, sum0, k == 0);
             for (int32_t h = g + 1; h < f.below_slabs; h++) {
