@@ -31,8 +31,8 @@ SL_NODISCARD sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_d
 
 /* The mouse moves: new targets theta (one per sector), two Newton steps, reconstruction (paper, Sec. 4.2). Where that
  * leads to no valid state everything is rolled back. SL_BAD_INPUT, SL_INFEASIBLE (theta; nothing changes),
- * SL_OUT_OF_MEMORY, SL_CANCELLED (the chart then holds what it held). After the first only sl_cholesky_factor allocates,
- * its workspace. */
+ * SL_OUT_OF_MEMORY, SL_CANCELLED (the chart then holds what it held). After the first only sl_cholesky_factor
+ * allocates, its workspace. */
 SL_NODISCARD sl_status sl_abf_chart_move(sl_abf_chart *chart, const double *theta, const sl_context *context);
 
 /* The button is released: the full criterion. Targets that are not reached in one go are approached step by step from
