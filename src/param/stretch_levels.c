@@ -18,6 +18,7 @@ static const double SINGULAR = 20.0; /* energy a unit of area of the star of a v
 /* The last coarse level stretches more than the chart itself, over 400 charts by up to 2.5 times as much where it has
  * TRUSTED triangles; by HOPE times as much the chart is hopeless. */
 static const double HOPE = 3.0, FAR_L2 = 10.0;
+static const double FAR_ENERGY = 100.0; /* a unit of area; no chart worth having ends there */
 static const int32_t TRUSTED = 500;
 enum { SWEEPS = 4 };
 
@@ -270,31 +271,67 @@ static sl_status finish(const descent *d, sl_stretch_info *info)
     return status;
 }
 
+/* The whole from its own Tutte embedding, into uv. */
+static sl_status start_over(descent *d, double *uv, sl_stretch_info *info)
+{
+    double *const levels_uv = d->uv;
+    sl_status status = sl_tutte(d->patch, SL_TUTTE_UNIFORM, d->context, uv);
+    d->hopeless = false;
+    d->uv = uv;
+    status = status == SL_OK ? finish(d, info) : status;
+    d->uv = levels_uv;
+    info->levels = 0;
+    return status;
+}
+
+static bool is_no_map(sl_status status)
+{
+    return status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_INFEASIBLE;
+}
+
+/* Through the levels, and where these give no map, or one whose border is caught in itself far from any minimum,
+ * without them; *best = the better map. */
+static sl_status unfold(descent *d, double *other, const double **best, sl_stretch_info *info)
+{
+    sl_stretch_info again = {0};
+    sl_status status = climb(d);
+    status = status == SL_OK ? finish(d, info) : status;
+    *best = d->uv;
+    if (status != SL_OK && is_no_map(status)) {
+        *best = other;
+        return start_over(d, other, info);
+    }
+    if (status != SL_OK || d->hopeless || info->energy_after <= FAR_ENERGY) {
+        return status;
+    }
+    status = start_over(d, other, &again);
+    if (status == SL_OK && again.energy_after < info->energy_after) {
+        *best = other;
+        *info = again;
+    }
+    return is_no_map(status) ? SL_OK : status;
+}
+
 sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context, double *uv,
                             sl_stretch_info *info)
 {
     sl_status status = SL_OK;
     sl_stretch_info result = {0};
     descent d = {.patch = patch, .def = def, .context = context};
+    const double *best;
+    double *other = NULL;
     if (!sl_patch_is_disk(patch)) {
         return SL_INFEASIBLE;
     }
     SL_TRY(sl_levels_create(patch, LEVEL_SHARE, LEAST, &d.levels));
     d.uv = sl_alloc(patch->nv, 2 * sizeof *d.uv);
     d.next = sl_alloc(patch->nv, sizeof *d.next);
-    if (d.uv == NULL || d.next == NULL) {
+    other = sl_alloc(patch->nv, 2 * sizeof *other);
+    if (d.uv == NULL || d.next == NULL || other == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    status = climb(&d);
-    status = status == SL_OK ? finish(&d, &result) : status;
-    if (status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_INFEASIBLE) { /* then without levels */
-        d.hopeless = false;
-        SL_TRY(sl_tutte(patch, SL_TUTTE_UNIFORM, context, d.uv));
-        status = finish(&d, &result);
-        result.levels = 0;
-    }
-    SL_TRY(status);
-    memcpy(uv, d.uv, 2 * (size_t)patch->nv * sizeof *uv);
+    SL_TRY(unfold(&d, other, &best, &result));
+    memcpy(uv, best, 2 * (size_t)patch->nv * sizeof *uv);
     if (info != NULL) {
         *info = result;
     }
@@ -302,5 +339,6 @@ cleanup:
     sl_levels_clear(&d.levels);
     sl_free(d.uv);
     sl_free(d.next);
+    sl_free(other);
     return status;
 }

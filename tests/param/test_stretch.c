@@ -364,7 +364,7 @@ static void long_limbs_are_unrolled_from_tutte(void **state)
 
 /* Several slender limbs at once: plain Newton steps are stopped by one limb or another, and leave energies of 1e5 and
  * more in half of such charts. Which of them still end far off depends on the last bits: 0 and 6 of these 24 as two
- * compilers evaluate them. */
+ * compilers evaluate them. From coarse meshes none does: test_stretch_levels.c. */
 static void charts_with_many_limbs_come_near_their_minimum(void **state)
 {
     (void)state;
