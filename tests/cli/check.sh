@@ -86,6 +86,14 @@ expect 0 "$seamlab" render $mesh -o uv.png --view uv --size 90x90 --show overlap
 expect 0 "$seamlab" render $mesh -o vector.png --view 3d --size 90x90 --show eigenvector=2 --quiet
 expect 0 "$seamlab" render $mesh -o mirror.png --view 3d --size 90x90 --show symmetry --quiet
 expect 0 "$seamlab" render $mesh -o cloth.png --size 120x60 --texture model.jpg --tiles 3 --quiet
+printf 'v 0 0 0\nv 1 0 0.2\nv 1 1 0\nv 0 1 0\nv 0.3 2 0.4\nv 1.4 2 0\nvt 0 0\nvt .5 0\nvt .5 .5\nvt 0 .5\nvt .1 .1\nvt .4 .2\n' >thumbs.obj
+printf 'f 1/1 2/2 3/3 4/4\nf 4/4 3/3 6/6 5/5\n' >>thumbs.obj
+expect 0 "$seamlab" render thumbs.obj -o thumbs.png --size 80x40 --show overlap,seams
+contains err.txt '4 of 4 triangles overlap'
+printf '3 2\n' >lines.txt
+expect 0 "$seamlab" render thumbs.obj -o lines.png --size 80x40 --constraints lines.txt --quiet
+printf '0 4\n' >lines.txt
+expect 3 "$seamlab" render thumbs.obj -o no.png --size 80x40 --constraints lines.txt --quiet
 expect 2 "$seamlab" render $mesh
 expect 2 "$seamlab" render $mesh -o no.gif
 expect 2 "$seamlab" render $mesh -o no.png --size 0x9
