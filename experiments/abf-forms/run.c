@@ -1,6 +1,5 @@
 /* The forms of ABF++ compared on charts of generated models, by a list of seeds. */
 #include "generators.h"
-#include "param/reconstruct.h"
 #include "support/claims.h"
 
 #include <math.h>

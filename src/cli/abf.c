@@ -99,10 +99,14 @@ static sl_status iterate(abf_options *o, abf_trace *trace, sl_abf *solver)
     const bool small = talk && trace->pick->patch->nt <= ABF_MATRIX_TRIANGLES;
     bool wait = o->step && talk && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
     const sl_abf_info *info = sl_abf_info_of(solver);
+    o->run.bar = false; /* the lines below say how it goes */
     sl_status status = abf_trace_add(trace, solver, &o->run.context);
     if (status == SL_OK && talk) {
         abf_print_head(trace);
         abf_print_frame(trace, 0);
+    }
+    if (status == SL_OK && wait) {
+        cli_note(&o->run, "any key: an iteration; r: run to the end; q: quit");
     }
     while (status == SL_OK && info->iterations < o->def.max_iterations && !info->converged && !info->stalled) {
         const char key = wait ? read_key() : 'r';
