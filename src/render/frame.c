@@ -66,12 +66,13 @@ sl_status sl_frame_create(const sl_frame_def *def, sl_frame **out)
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
-    memcpy(f->tri, def->tri, 3 * (size_t)def->nt * sizeof *f->tri);
-    memset(f->rgb, PLAIN, 3 * (size_t)def->nt);
-    if (def->rgb != NULL) {
-        sl_frame_set_colors(f, def->rgb);
+    for (int64_t i = 0; i < 3 * (int64_t)def->nt; i++) {
+        f->tri[i] = def->tri[i];
+        f->rgb[i] = def->rgb != NULL ? def->rgb[i] : PLAIN;
     }
-    sl_frame_set_positions(f, def->xyz);
+    if (def->nv > 0) {
+        sl_frame_set_positions(f, def->xyz);
+    }
     SL_TRY(def->corner_uv != NULL ? sl_frame_set_uv(f, def->corner_uv) : SL_OK);
     set_tables(f);
     *out = f;
