@@ -266,6 +266,7 @@ static void a_simple_border_is_kept_on_all_levels(void **state)
         def.max_iterations = 20;
         assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, &info), SL_OK);
         assert_true(chart_certify(patch, uv).embedded);
+        assert_true(info.levels > 0 || trial % 4 != 3); /* without starting over */
         free(uv);
         sl_patch_free(patch);
     }
@@ -306,9 +307,11 @@ static void a_coarse_level_says_what_is_hopeless(void **state)
     assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, &info), SL_OK);
     assert_true(info.hopeless && !info.converged && info.iterations == 0 && info.l2 < 10.0);
     assert_int_equal(chart_flips(patch, uv), 0);
-    def.target_l2 = 5.0;
+    def.target_l2 = 0.0; /* and one just within reach is reached */
     assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, &info), SL_OK);
-    assert_true(!info.hopeless && info.converged && info.l2 <= 5.0);
+    def.target_l2 = 1.0 + 1.03 * (info.l2 - 1.0);
+    assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, &info), SL_OK);
+    assert_true(!info.hopeless && info.converged && info.l2 <= def.target_l2);
     free(uv);
     sl_patch_free(patch);
 }
