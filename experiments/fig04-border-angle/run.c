@@ -40,7 +40,9 @@ static sl_status turn(exp_run *run, const exp_sheet *sheet, const exp_wish *wish
                                   &(exp_drawing){.width = SIDE, .height = SIDE, .file = file}));
         }
     }
+    const double before = exp_cpu_seconds();
     SL_TRY(sl_abf_chart_release(chart, theta, &run->context));
+    drags[DRAGS + 1].solution.cpu = exp_cpu_seconds() - before;
     SL_TRY(exp_sheet_measure(sheet, wish, table, chart, &drags[DRAGS + 1].solution));
     drags[DRAGS + 1].asked = drags[DRAGS].asked;
 cleanup:

@@ -43,10 +43,6 @@ static sl_status show_angle(exp_run *run, exp_page *page, exp_claims *claims, co
     SL_TRY(exp_sheet_draw(run, sheet, sl_abf_chart_uv(chart), &wish,
                           &(exp_drawing){.tint = tint, .width = SIDE, .height = SIDE, .radius = DOT, .file = file}));
     snprintf(what, sizeof what, k == 0 ? "free: %.4f degrees" : "asked for: %.4f degrees", sum * degrees);
-    exp_page_html(page,
-                  "<tr><td colspan=\"17\"><img loading=\"lazy\" width=\"%d\" src=\"fig09-angle/%s\" alt=\"the chart\">"
-                  "</td></tr>\n",
-                  SIDE, file);
     exp_solution_row(page, claims, sheet->name, what, &wish, &solution);
 cleanup:
     sl_abf_chart_free(chart);
@@ -76,6 +72,14 @@ static sl_status show(exp_run *run, exp_page *page, exp_claims *claims, const ch
         SL_TRY(show_angle(run, page, claims, &sheet, v, tint, k));
     }
     exp_page_table_end(page);
+    exp_page_html(page, "<div class=\"grid\">\n");
+    for (int k = 0; k < ANGLES; k++) {
+        char file[96], caption[64];
+        snprintf(file, sizeof file, "%s-%d.png", model, k);
+        snprintf(caption, sizeof caption, k == 0 ? "free" : "%.0f&deg;", asked[k]);
+        exp_page_figure(page, "", file, "the chart", caption);
+    }
+    exp_page_html(page, "</div>\n");
 cleanup:
     sl_abf_chart_free(chart);
     sl_sectors_clear(&table);

@@ -39,7 +39,7 @@ sl_status exp_show_pair(exp_run *run, exp_page *page, const exp_sheet *sheet, co
     SL_TRY(exp_sheet_draw(run, sheet, after, wish,
                           &(exp_drawing){.width = WIDTH, .height = HEIGHT, .model = true, .file = file[1]}));
     snprintf(text, sizeof text, "<b>%s</b>: what is picked, in the free chart.", sheet->name);
-    exp_page_html(page, "<div class=\"duo\">\n");
+    exp_page_html(page, "<div class=\"duo\" style=\"grid-template-columns:1fr 1fr\">\n");
     exp_page_figure(page, "", file[0], "the chart before", text);
     exp_page_figure(page, "", file[1], "the chart after", caption);
     exp_page_html(page, "</div>\n");
