@@ -180,6 +180,17 @@ static sl_status warn_of_symmetry(sl_atlas *atlas, const sl_atlas_def *def)
         }
         snprintf(w->text, sizeof w->text, "no exact symmetry was found to share texture by");
     }
+    if (info->near_axes > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(
+            w->text, sizeof w->text,
+            "copies across %d axes are approximate: a near symmetry, with corners up to %.3g of the diagonal off (%g "
+            "allowed)",
+            info->near_axes, info->deviation, sl_symmetry_default().near);
+    }
     if (info->planes > 0) {
         sl_warning *w = push_warning(atlas, -1);
         if (w == NULL) {

@@ -114,6 +114,9 @@ static json_t *symmetry_json(const sl_atlas *atlas)
     json_object_set_new(j, "truncated", json_boolean(s->truncated));
     json_object_set_new(j, "near_planes", json_integer(s->planes));
     json_object_set_new(j, "near_plane_misfit", number(s->misfit));
+    json_object_set_new(j, "near_axes", json_integer(s->near_axes));
+    json_object_set_new(j, "near_axis_deviation", number(s->deviation));
+    json_object_set_new(j, "near_tolerance", number(sl_symmetry_default().near));
     return j;
 }
 

@@ -252,6 +252,7 @@ static sl_status take_axis(axis_search *s, sl_piece *piece, const axis *chosen, 
     SL_TRY(list_copies(piece->mesh, s->side, s->image, &job->copies));
     job->copies.reverses = chosen->map->reverses;
     job->copies.kind = is_exact(chosen->map) ? SL_SYMMETRY_EXACT : SL_SYMMETRY_NEAR;
+    job->misfit = chosen->map->deviation;
     for (int32_t f = 0; f < n; f++) {
         side[f] = s->side[f];
     }

@@ -74,6 +74,10 @@ static sl_status note_symmetry(run *r, const sl_chart_job *job)
     sl_sharing_info *info = &r->sharing.info;
     info->axes += job->copies.count > 0;
     info->truncated |= job->truncated;
+    if (job->copies.count > 0 && job->copies.kind == SL_SYMMETRY_NEAR) {
+        info->near_axes++;
+        info->deviation = fmax(info->deviation, job->misfit);
+    }
     if (job->split.symmetry == SL_SPLIT_PLANE) {
         info->planes++;
         info->misfit = fmax(info->misfit, job->misfit);

@@ -105,6 +105,8 @@ typedef struct sl_sharing_info {
     bool truncated;     /* the list of automorphisms was cut short somewhere */
     int32_t planes;     /* first cuts taken at the plane of a near symmetry */
     double misfit;      /* the worst misfit of those, over the diagonal */
+    int32_t near_axes;  /* of the axes, those of near symmetries: their copies are approximate */
+    double deviation;   /* the largest distance of a corner there from where its image belongs, over the diagonal */
 } sl_sharing_info;
 
 typedef struct sl_segmentation {

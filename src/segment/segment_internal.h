@@ -120,7 +120,7 @@ typedef struct sl_chart_job {
     sl_split split;
     sl_copy_list copies; /* of the facets of part -1 */
     bool truncated;      /* not all automorphisms were listed */
-    double misfit;       /* of the plane taken, see sl_sharing_info */
+    double misfit;       /* of the plane taken, or the deviation of the near axis, see sl_sharing_info */
     /* a chart that is a copy */
     bool copy;
     int32_t source_face; /* first facet of the chart it copies */

@@ -284,6 +284,9 @@ static void only_near_shares_what_is_not_exact(void **state)
         for (int32_t c = 0; c < s->nchart; c++) {
             assert_true(s->chart[c].copy_of < 0 || s->chart[c].kind == SL_SYMMETRY_NEAR);
         }
+        assert_true((s->sharing.near_axes > 0) == (near == 1));
+        assert_true(near == 1 ? s->sharing.deviation > 1e-6 && s->sharing.deviation <= 1e-2
+                              : s->sharing.deviation == 0.0);
         sl_segmentation_free(s);
         sl_triangulation_free(t);
         sl_mesh_free(mesh);
