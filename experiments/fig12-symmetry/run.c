@@ -119,7 +119,7 @@ static sl_status show_model(exp_run *run, exp_page *page, exp_claims *claims, co
     picture.back_view = large;
     sl_atlas *atlas = NULL;
     char file[96], alt[160], caption[400];
-    exp_page_html(page, "<div class=\"duo\">\n");
+    exp_page_html(page, "<div class=\"duo\" style=\"grid-template-columns:1fr 1fr\">\n");
     for (int k = 0; k < 2; k++) {
         sl_atlas_def def = sl_atlas_default();
         int32_t images = 1;
