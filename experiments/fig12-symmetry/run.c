@@ -172,7 +172,8 @@ static void introduce(exp_page *page)
                   "\"the four halves of the legs are mapped onto a single location in U,V space (in orange)\". Here: a "
                   "model with one mirror whose legs are symmetric in themselves. The axis of the whole is cut first; "
                   "one half is segmented by spectral cuts; the leg, which no single chart holds without too much "
-                  "stretch, has an axis of its own; three halves copy the fourth. Colours are those of the texture: "
+                  "stretch, has an axis of its own; three halves copy the fourth. On the right, colours are those of "
+                  "the texture: "
                   "two places of one colour share it.</p>\n");
 }
 
