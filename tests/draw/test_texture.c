@@ -101,6 +101,25 @@ static void from_far_away_a_texture_is_its_mean(void **state)
     }
 }
 
+/* The same stripes the other way round: a footprint a period long shows their mean, on whichever side it is long. */
+static void a_long_footprint_averages_along_itself(void **state)
+{
+    (void)state;
+    uint8_t pixels[64 * 64 * 3];
+    for (int32_t i = 0; i < 64 * 64 * 3; i++) {
+        pixels[i] = i / 3 / 64 / 8 % 2 != 0 ? 230 : 20;
+    }
+    sl_texture *t = make(64, 64, 3, pixels);
+    const double uv[2] = {0.37, 1.0 - (8 + 4) / 64.0}, narrow[2] = {1.0 / 64.0, 0.0}, tall[2] = {0.0, 16.0 / 64.0};
+    float rgb[2][3];
+    assert_true(sl_texture_sample(t, uv, narrow, tall, rgb[0]));
+    assert_true(sl_texture_sample(t, uv, tall, narrow, rgb[1]));
+    for (int k = 0; k < 2; k++) {
+        assert_true(fabs((double)rgb[k][0] - 125.0 / 255.0) < 0.06);
+    }
+    sl_texture_free(t);
+}
+
 /* Stripes along u under a footprint long in v: still sharp, where one isotropic sample would be grey. */
 static void a_long_footprint_blurs_along_itself_only(void **state)
 {
@@ -146,6 +165,7 @@ int main(void)
         cmocka_unit_test(the_middle_of_a_texel_shows_it_exactly_wherever_it_repeats),
         cmocka_unit_test(between_texels_light_is_interpolated_in_both_directions),
         cmocka_unit_test(from_far_away_a_texture_is_its_mean),
+        cmocka_unit_test(a_long_footprint_averages_along_itself),
         cmocka_unit_test(a_long_footprint_blurs_along_itself_only),
         cmocka_unit_test(numbers_that_are_no_places_and_sizes_out_of_range_are_refused),
     };
