@@ -232,6 +232,7 @@ static json_t *certificate_json(const sl_atlas *atlas)
     json_object_set_new(j, "flipped", json_integer(c->flipped));
     json_object_set_new(j, "degenerate", json_integer(c->degenerate));
     json_object_set_new(j, "uncertified_charts", json_integer(c->uncertified_charts));
+    json_object_set_new(j, "proven", json_boolean(c->proven));
     json_object_set_new(j, "resolution", json_integer(c->resolution));
     json_object_set_new(j, "covered_texels", json_integer(c->covered_texels));
     json_object_set_new(j, "overlapping_texels", json_integer(c->overlapping_texels));

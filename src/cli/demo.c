@@ -9,9 +9,9 @@
 
 static const cli_verb verb = {
     .name = "demo",
-    .usage = "seamlab demo [-o DIR] [--model NAME] [--list]",
+    .usage = "seamlab demo [MODEL] [-o DIR] [--list]",
     .summary = "Generates a mesh, unwraps it and writes mesh, sidecar and pictures into a folder.",
-    .examples = "  seamlab demo\n  seamlab demo --model torus -o torus\n  seamlab demo --list\n",
+    .examples = "  seamlab demo\n  seamlab demo airplane -o airplane\n  seamlab demo --list\n",
     .min_files = 0,
     .max_files = 1,
 };
@@ -102,11 +102,12 @@ int cli_demo(int argc, char **argv)
         print_list();
         return CLI_DONE;
     }
+    model = file_count > 0 ? files[0] : model;
     const sl_generator *generator = sl_generator_find(model);
     if (generator == NULL) {
         fprintf(stderr, "seamlab demo: there is no model '%s'; --list names them\n", model);
         return CLI_USAGE;
     }
     code = cli_begin(&run);
-    return code >= 0 ? code : cli_end(&run, run_demo(&run, generator, file_count > 0 ? files[0] : folder));
+    return code >= 0 ? code : cli_end(&run, run_demo(&run, generator, folder));
 }

@@ -172,7 +172,7 @@ expect 3 "$seamlab" abf $mesh --chart 100000
 contains err.txt 'there is no chart'
 
 # --- warnings, --strict, and a cap that leaves nothing to deliver
-expect 0 "$seamlab" demo --model sphere -o ball --quiet
+expect 0 "$seamlab" demo sphere -o ball --quiet
 few='--max-charts 2 --max-stretch 1.01 --sew off --minimise off --symmetry off'
 expect 0 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few
 contains err.txt 'warning: chart'
