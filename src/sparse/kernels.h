@@ -11,6 +11,19 @@
 
 #include "base/status.h"
 
+/* How a kernel's parts are put into it. Sanitised builds leave that to the compiler: instrumented and inlined into one
+ * function they cost clang minutes and gigabytes. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define SL_KERNEL_SANITIZED 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(SL_KERNEL_SANITIZED)
+#define SL_KERNEL_INLINE unused
+#else
+#define SL_KERNEL_INLINE always_inline
+#endif
+
 #define SL_SLAB 8
 
 /* Depth of a product before its operands would leave the first-level cache. */

@@ -1,5 +1,7 @@
 /* The kernels for x86-64-v3: AVX2 and FMA, eight doubles in two registers. */
 #if defined(__x86_64__)
+#include "sparse/kernels.h"
+
 #include <immintrin.h>
 #include <stdint.h>
 
@@ -7,7 +9,7 @@ typedef struct vec {
     __m256d lo, hi;
 } vec;
 
-#define SL_KERNEL static inline __attribute__((target("avx2,fma"), always_inline))
+#define SL_KERNEL static inline __attribute__((target("avx2,fma"), SL_KERNEL_INLINE))
 #define SL_KERNEL_ENTRY static __attribute__((target("avx2,fma")))
 
 static const int64_t lanes[16] = {-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0};

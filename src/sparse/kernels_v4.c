@@ -1,10 +1,12 @@
 /* The kernels for x86-64-v4: AVX-512. */
 #if defined(__x86_64__)
+#include "sparse/kernels.h"
+
 #include <immintrin.h>
 
 typedef __m512d vec;
 
-#define SL_KERNEL static inline __attribute__((target("avx512f,avx2,fma"), always_inline))
+#define SL_KERNEL static inline __attribute__((target("avx512f,avx2,fma"), SL_KERNEL_INLINE))
 #define SL_KERNEL_ENTRY static __attribute__((target("avx512f,avx2,fma")))
 
 SL_KERNEL __mmask8 mask_of(int count)
