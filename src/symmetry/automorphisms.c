@@ -173,7 +173,9 @@ sl_status sl_symmetry_automorphisms(sl_symmetry_search *search, int32_t componen
         f.cut = f.cut || (!few && f.found >= f.cap && k < SL_SYMMETRY_TOPOLOGICAL);
     }
     search->out->truncated = search->out->truncated || f.cut;
-    sort_maps(search->out->map + first, search->out->nmap - first);
+    if (search->out->nmap > first) {
+        sort_maps(search->out->map + first, search->out->nmap - first);
+    }
 cleanup:
     sl_free(f.list);
     return status;
