@@ -1,31 +1,11 @@
 #include "cli/options.h"
 
 #include "base/text.h"
+#include "cli/options_help.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-static void print_help(const cli_verb *verb, const cli_option *options, int32_t count)
-{
-    printf("%s\n\nExamples:\n%s\nUsage: %s\n", verb->summary, verb->examples, verb->usage);
-    if (count > 0) {
-        printf("\nOptions:\n");
-    }
-    for (int32_t k = 0; k < count; k++) {
-        const cli_option *o = &options[k];
-        char head[96];
-        const char *argument = o->kind == CLI_CHOICE   ? o->choices
-                               : o->kind == CLI_ON_OFF ? "on|off"
-                               : o->argument != NULL   ? o->argument
-                                                       : "";
-        const int n = snprintf(head, sizeof head, "  %s%s%s",
-                               o->letter != 0 ? (char[]){'-', o->letter, ',', ' ', 0} : "", "--", o->name);
-        snprintf(head + n, sizeof head - (size_t)n, "%s%s", argument[0] != '\0' ? " " : "", argument);
-        printf(strlen(head) < 30 ? "%-30s %s\n" : "%s\n                               %s\n", head, o->help);
-    }
-    printf("  %-28s %s\n", "-h, --help", "this text");
-}
 
 static int usage_error(const cli_verb *verb, const char *what, const char *value)
 {
@@ -159,10 +139,18 @@ static const cli_option *find_option(const cli_option *options, int32_t count, c
     return NULL;
 }
 
+static bool asks_help(const char *argument, cli_help *help)
+{
+    *help = CLI_HELP_TEXT;
+    return strcmp(argument, "-h") == 0 || strcmp(argument, "--help") == 0 ||
+           (strncmp(argument, "--help=", 7) == 0 && cli_help_named(argument + 7, help));
+}
+
 int cli_parse(const cli_verb *verb, const cli_option *options, int32_t count, int argc, char **argv, int first,
               const char **files, int32_t *file_count)
 {
     bool only_files = false;
+    cli_help help;
     *file_count = 0;
     for (int a = first; a < argc; a++) {
         const char *argument = argv[a], *value;
@@ -177,8 +165,8 @@ int cli_parse(const cli_verb *verb, const cli_option *options, int32_t count, in
             files[(*file_count)++] = argument;
             continue;
         }
-        if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0) {
-            print_help(verb, options, count);
+        if (asks_help(argument, &help)) {
+            cli_help_print(help, verb, options, count);
             return 0;
         }
         const cli_option *option = find_option(options, count, argument, &value);
