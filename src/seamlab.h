@@ -34,6 +34,7 @@
 #include "param/sectors.h"
 #include "param/tutte.h"
 #include "render/render.h"
+#include "seamcost/seamcost.h"
 #include "segment/segment.h"
 #include "sparse/cholesky.h"
 #include "spectral/spectrum.h"
