@@ -158,6 +158,29 @@ cleanup:
     return status;
 }
 
+/* Are the three angles those of a triangle, as far as signs go? */
+static bool usable(const double *angle)
+{
+    return angle[0] > 0.0 && angle[0] < pi && angle[1] > 0.0 && angle[1] < pi && angle[2] > 0.0 && angle[2] < pi;
+}
+
+int32_t sl_abf_start_from(sl_abf *solver, const double *angle)
+{
+    const int32_t nt = solver->patch->nt;
+    int32_t taken = 0;
+    start_angles(solver);
+    for (int32_t t = 0; t < nt && angle != NULL; t++) {
+        if (usable(&angle[3 * (int64_t)t])) {
+            memcpy(&solver->alpha[3 * (int64_t)t], &angle[3 * (int64_t)t], 3 * sizeof *angle);
+            taken++;
+        }
+    }
+    memset(solver->lambda1, 0, (size_t)nt * sizeof *solver->lambda1);
+    memset(solver->lambda2, 0, (size_t)solver->system.nrows * sizeof *solver->lambda2);
+    begin(solver);
+    return taken;
+}
+
 sl_status sl_abf_set_targets(sl_abf *solver, const double *theta)
 {
     for (int32_t s = 0; s < solver->sectors.count; s++) {

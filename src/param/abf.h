@@ -78,6 +78,12 @@ typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borro
  * not ascending), SL_OUT_OF_MEMORY. On failure *out is NULL. */
 SL_NODISCARD sl_status sl_abf_create(const sl_patch *patch, const sl_abf_def *def, sl_abf **out);
 
+/* Starts anew from given planar angles (3 nt [rad], one per patch corner; NULL = none): a triangle one of whose three
+ * is not in (0, pi) - NaN says that none is known - starts from its optimal angles phi, as sl_abf_create starts all of
+ * them. Multipliers are set to 0: with the curvature dropped a first full step finds theirs from the angles alone.
+ * Returns how many triangles start as given. Allocates nothing, cannot fail. */
+int32_t sl_abf_start_from(sl_abf *solver, const double *angle);
+
 /* New prescribed sums theta (sectors->count, copied) for the same sectors: the warm start of a drag. Angles,
  * multipliers and the symbolic analysis stay; converged, stalled and the count of iterations begin anew. SL_BAD_INPUT
  * (not finite), SL_INFEASIBLE (a region's sum contradicts Gauss-Bonnet); the solver is then unchanged. */

@@ -17,6 +17,8 @@ typedef struct sl_abf_chart_info {
     double distance;           /* largest |sector sum held - target| [rad]: what is left where reached < 1 */
     int32_t solves;            /* of the last release: 1 unless it was approached by homotopy */
     int32_t iterations;        /* Newton steps in all of them */
+    int32_t taken_over;        /* triangles that sl_abf_chart_create_from started from the angles given; 0 too where
+                                  no solution was found from these and the measured angles were used after all */
 } sl_abf_chart_info;
 
 typedef struct sl_abf_chart sl_abf_chart; /* opaque; borrows the patch and def->sectors' corners */
@@ -28,6 +30,20 @@ typedef struct sl_abf_chart sl_abf_chart; /* opaque; borrows the patch and def->
  */
 SL_NODISCARD sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_def *def, const sl_context *context,
                                            sl_abf_chart **out);
+
+/* The same from angles known already, those of a chart that was cut, sewn or grown a little: `angle` (3 nt [rad], one
+ * per patch corner; borrowed for the call) as sl_abf_start_from takes it, NaN where none is known; NULL = none at all.
+ * Where that leads to no valid converged state the angles given are forgotten: what follows, and the statuses, are
+ * those of sl_abf_chart_create. sl_abf_carry_angles finds `angle` from another patch. */
+SL_NODISCARD sl_status sl_abf_chart_create_from(const sl_patch *patch, const sl_abf_def *def, const double *angle,
+                                                const sl_context *context, sl_abf_chart **out);
+
+/* Carries angles over between patches of one triangulated mesh: to_angle (3 to->nt) is written at the corners of every
+ * triangle of `to` that `from` has, too (the same facet and corners, in the same order), and left as it is elsewhere.
+ * Fill it with NaN first; a chart sewn from two takes two calls. *taken (nullable) = triangles written. No aliasing.
+ * SL_OUT_OF_MEMORY. O(n log n). */
+SL_NODISCARD sl_status sl_abf_carry_angles(const sl_patch *from, const double *from_angle, const sl_patch *to,
+                                           double *to_angle, int32_t *taken);
 
 /* The mouse moves: new targets theta (one per sector), two Newton steps, reconstruction (paper, Sec. 4.2). Where that
  * leads to no valid state everything is rolled back. SL_BAD_INPUT, SL_INFEASIBLE (theta; nothing changes),
