@@ -9,19 +9,22 @@
 
 /* Positions and UVs are welded by exact value; facets are fans from their first corner, cut into ears
  * where that fan turns over in 3D (a valid map of a concave facet would count as flipped). A seam edge has two or more
- * facets with different UVs along it; borders of the mesh are none. Charts join over edges with equal UVs. */
+ * facets with different UVs along it; borders of the mesh are none. Charts join over edges with equal UVs. Duplicate
+ * and degenerate facets (as the builder isolates them) make neither charts nor seams of their own and are counted
+ * apart; they do count as triangles and texels. */
 typedef struct sl_atlas_measure {
     int32_t triangles;
     int32_t charts, charts10; /* charts; those of at most 10 triangles */
-    double seam_length;       /* over sqrt(surface area) */
-    double seam_diagonal;     /* over the diagonal of the bounding box */
-    sl_distortion global;     /* after one scale for the whole atlas: L2, Linf, angle, area; flipped, degenerate */
-    double overlap_inside;    /* share of covered texels hit twice within a chart */
-    double overlap_across;    /* ... across charts */
-    int32_t copies;           /* charts that copy another, by the sharing table; 0 without one */
-    double shared;            /* share of covered texels that copies and their sources have in common: intended, and not
-                                 counted as overlap */
-    double fill;              /* covered texels / resolution^2 of the UVs' bounding square */
+    int32_t duplicate_facets, degenerate_facets;
+    double seam_length;    /* over sqrt(surface area) */
+    double seam_diagonal;  /* over the diagonal of the bounding box */
+    sl_distortion global;  /* after one scale for the whole atlas: L2, Linf, angle, area; flipped, degenerate */
+    double overlap_inside; /* share of covered texels hit twice within a chart */
+    double overlap_across; /* ... across charts */
+    int32_t copies;        /* charts that copy another, by the sharing table; 0 without one */
+    double shared;         /* share of covered texels that copies and their sources have in common: intended, and not
+                              counted as overlap */
+    double fill;           /* covered texels / resolution^2 of the UVs' bounding square */
     double chart_l2_mean, chart_l2_worst; /* L2 with each chart's best scale; mean over charts, worst */
     int32_t worst_chart;                  /* numbered by first facet */
     int32_t resolution;

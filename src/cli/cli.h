@@ -57,6 +57,7 @@ bool cli_make_folder(cli_run *run, const char *folder);
 /* The verbs, one file each: argv[2 ..] are theirs. */
 int cli_abf(int argc, char **argv);
 int cli_check(int argc, char **argv);
+int cli_compare(int argc, char **argv);
 int cli_demo(int argc, char **argv);
 int cli_measure(int argc, char **argv);
 int cli_overlap(int argc, char **argv);

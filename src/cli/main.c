@@ -15,6 +15,7 @@ typedef struct verb_entry {
 static const verb_entry verbs[] = {
     {"unwrap", cli_unwrap, "cut, flatten and pack a mesh: UVs, a sidecar, pictures"},
     {"measure", cli_measure, "charts, seams, distortion, overlap and fill of any mesh with UVs"},
+    {"compare", cli_compare, "several atlases, whatever tool made them, by the same measures, with pictures"},
     {"overlap", cli_overlap, "do the UVs of a mesh overlap, and where: by texels, or exactly"},
     {"check", cli_check, "what is wrong with a mesh and how it would be repaired"},
     {"segment", cli_segment, "the charts only: labels, seam edges, a coloured PLY"},

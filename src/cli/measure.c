@@ -1,9 +1,6 @@
 /* seamlab measure: the columns by which atlases are compared. */
-#include "atlas/sidecar.h"
-#include "cli/cli.h"
+#include "cli/measured.h"
 
-#include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 
 static const cli_verb verb = {
@@ -21,6 +18,10 @@ static void print_row(const char *name, const sl_atlas_measure *m)
     const sl_distortion *d = &m->global;
     printf("%s\n", name);
     printf("  triangles %d   charts %d (%d of at most 10 triangles)\n", m->triangles, m->charts, m->charts10);
+    if (m->duplicate_facets + m->degenerate_facets > 0) {
+        printf("  apart      %d duplicate and %d degenerate facets: neither charts nor seams\n", m->duplicate_facets,
+               m->degenerate_facets);
+    }
     printf("  seams      %.4f of sqrt(area)   %.4f of the diagonal\n", m->seam_length, m->seam_diagonal);
     printf("  stretch    L2 %.4f   Linf %.4g   per chart: mean %.4f, worst %.4f (chart %d)\n", d->l2, d->linf,
            m->chart_l2_mean, m->chart_l2_worst, m->worst_chart);
@@ -35,78 +36,12 @@ static void print_row(const char *name, const sl_atlas_measure *m)
     printf("  fill       %.4f of the bounding square at %d^2\n", m->fill, m->resolution);
 }
 
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-/* Column names are those of the comparison tables of other tools. */
-static json_t *row_json(const char *name, const sl_atlas_measure *m)
-{
-    const sl_distortion *d = &m->global;
-    json_t *j = json_pack("{s:i, s:s, s:i, s:i, s:i}", "schema", 1, "file", name, "tri", m->triangles, "charts",
-                          m->charts, "charts10", m->charts10);
-    json_object_set_new(j, "seamLen", number(m->seam_length));
-    json_object_set_new(j, "seamDiag", number(m->seam_diagonal));
-    json_object_set_new(j, "flip", json_integer(d->flipped));
-    json_object_set_new(j, "deg", json_integer(d->degenerate));
-    json_object_set_new(j, "ovIn", number(m->overlap_inside));
-    json_object_set_new(j, "ovX", number(m->overlap_across));
-    json_object_set_new(j, "copies", json_integer(m->copies));
-    json_object_set_new(j, "shared", number(m->shared));
-    json_object_set_new(j, "angMean", number(d->angle_mean));
-    json_object_set_new(j, "ang95", number(d->angle_p95));
-    json_object_set_new(j, "angMax", number(d->angle_max));
-    json_object_set_new(j, "L2", number(d->l2));
-    json_object_set_new(j, "Linf", number(d->linf));
-    json_object_set_new(j, "areaMean", number(d->area_mean));
-    json_object_set_new(j, "areaMax", number(d->area_max));
-    json_object_set_new(j, "pack", number(m->fill));
-    json_object_set_new(j, "chartL2Mean", number(m->chart_l2_mean));
-    json_object_set_new(j, "chartL2Worst", number(m->chart_l2_worst));
-    json_object_set_new(j, "worstChart", json_integer(m->worst_chart));
-    return j;
-}
-
-/* What the sidecar beside the file says of shared charts; NULL without one, or where it is of another mesh. */
-static const sl_sharing_table *read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
-{
-    char sidecar[4096];
-    sl_diag diag = sl_diag_none();
-    sl_sidecar_path(path, sidecar, sizeof sidecar);
-    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
-    if (status != SL_OK && status != SL_IO) {
-        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
-    }
-    return status == SL_OK ? table : NULL;
-}
-
 static int measure_file(cli_run *run, const char *path, int32_t resolution)
 {
-    sl_diag diag = sl_diag_none();
-    sl_meshfile *file = NULL;
-    sl_polygons polygons;
-    sl_sharing_table table = {0};
     sl_atlas_measure m;
-    int code = cli_read_mesh(run, path, &file);
-    if (code != CLI_DONE) {
-        return code;
-    }
-    if (file->corner_uv == NULL) {
-        sl_diag_reason(&diag, "%s has no UVs to measure", path);
-        sl_diag_hint(&diag, "seamlab unwrap makes some");
-        code = cli_fail(run, SL_BAD_INPUT, &diag);
-    } else {
-        sl_meshfile_polygons(file, &polygons);
-        snprintf(diag.file, sizeof diag.file, "%s", path);
-        const sl_sharing_table *shared = read_sharing(run, path, polygons.nf, &table);
-        code = cli_fail(
-            run, sl_measure_shared(&polygons, file->corner_uv, shared, resolution, &run->context, &m, &diag), &diag);
-    }
-    sl_sharing_table_clear(&table);
-    sl_meshfile_free(file);
+    const int code = cli_measure_path(run, path, resolution, &m);
     if (code == CLI_DONE && run->json) {
-        json_t *j = row_json(path, &m);
+        json_t *j = cli_measure_json(path, &m);
         json_dumpf(j, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
         putchar('\n');
         json_decref(j);

@@ -90,8 +90,7 @@ bool cli_show_parse(const char *words, cli_show *show)
     return colors <= 1;
 }
 
-/* A name, or azimuth,elevation[,field of view]. */
-static bool parse_camera(const char *text, sl_view *view)
+bool cli_camera_parse(const char *text, sl_view *view)
 {
     static const struct {
         const char *name;
@@ -162,7 +161,7 @@ static int check_options(render_options *o)
     if (strcmp(o->output, "-") != 0 && !is_jpeg(o->output) && !cli_has_extension(o->output, ".png")) {
         return usage("-o writes .png and .jpg, not", o->output);
     }
-    if (o->camera != NULL && !parse_camera(o->camera, &o->from)) {
+    if (o->camera != NULL && !cli_camera_parse(o->camera, &o->from)) {
         return usage("--camera is front, back, left, right, top, bottom or AZIMUTH,ELEVATION[,FOV in degrees], not",
                      o->camera);
     }

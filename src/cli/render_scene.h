@@ -48,6 +48,9 @@ typedef struct cli_scene {
 /* Reads "seams,checker,eigenvector=3". False after a message on stderr. */
 bool cli_show_parse(const char *words, cli_show *show);
 
+/* Reads a camera: "front", "back", "left", "right", "top", "bottom", or "azimuth,elevation[,field of view]". */
+bool cli_camera_parse(const char *text, sl_view *view);
+
 /* Reads the file and makes what is to be shown. Returns the exit code; cleared by the caller in any case. */
 int cli_scene_open(cli_run *run, const cli_scene_options *options, cli_scene *scene);
 void cli_scene_clear(cli_scene *scene);

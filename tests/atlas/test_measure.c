@@ -191,6 +191,50 @@ static void a_mesh_of_one_point_has_no_seams(void **state)
     assert_true(m.seam_diagonal == 0.0 && m.seam_length == 0.0);
 }
 
+/* Facets that the builder isolates, with UVs of their own far away: the atlas is what it was without them. */
+static void duplicate_and_degenerate_facets_stand_apart(void **state)
+{
+    (void)state;
+    enum { EXTRA = 4, ALL = FACETS + EXTRA };
+    grid *g = malloc(sizeof *g);
+    const double map[] = {0.9, 0.3, -0.2, 1.1};
+    grid_make(g, map, 3);
+    const sl_atlas_measure without = measure(g);
+    int32_t first[ALL + 1], *index = malloc((CORNERS + 3 * EXTRA + 2) * sizeof *index);
+    double *uv = malloc(2 * (CORNERS + 3 * EXTRA + 2) * sizeof *uv);
+    memcpy(first, g->first, sizeof g->first);
+    memcpy(index, g->index, sizeof g->index);
+    memcpy(uv, g->uv, sizeof g->uv);
+    int32_t corners = CORNERS;
+    test_rng rng = test_rng_seed(0xd0b1);
+    for (int32_t k = 0; k < EXTRA; k++) { /* two copies of quads, the second with its corners turned; two slivers */
+        const int32_t copied = 11 + 17 * k, n = k < 2 ? 4 : 3, v = 3 * k;
+        const int32_t sliver[3] = {v, v + GRID + 1, v};
+        for (int32_t c = 0; c < n; c++) {
+            index[corners] = k < 2 ? g->index[4 * copied + (c + k) % 4] : sliver[c];
+            uv[2 * corners] = test_uniform(&rng, 0.2, 0.4);
+            uv[2 * corners + 1] = test_uniform(&rng, 0.2, 0.4);
+            corners++;
+        }
+        first[FACETS + k + 1] = corners;
+    }
+    const sl_polygons polygons = {g->polygons.nv, ALL, g->xyz, first, index};
+    sl_atlas_measure with;
+    assert_int_equal(sl_measure_atlas(&polygons, uv, 512, NULL, &with, NULL), SL_OK);
+    assert_int_equal(without.duplicate_facets + without.degenerate_facets, 0);
+    assert_int_equal(with.duplicate_facets, 2);
+    assert_int_equal(with.degenerate_facets, 2);
+    assert_int_equal(with.charts, without.charts);
+    assert_int_equal(with.charts10, without.charts10);
+    assert_true(test_near(with.seam_length, without.seam_length, 1e-12));
+    assert_true(test_near(with.chart_l2_worst, without.chart_l2_worst, 1e-12));
+    assert_int_equal(with.worst_chart, without.worst_chart);
+    assert_int_equal(with.triangles, without.triangles + 2 * 2 + 2);
+    free(index);
+    free(uv);
+    free(g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +246,7 @@ int main(void)
         cmocka_unit_test(a_concave_facet_is_not_a_flip),
         cmocka_unit_test(a_mesh_of_one_point_has_no_seams),
         cmocka_unit_test(a_missing_uv_is_named),
+        cmocka_unit_test(duplicate_and_degenerate_facets_stand_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
