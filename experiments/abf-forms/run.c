@@ -1,6 +1,6 @@
 /* The forms of ABF++ compared on charts of generated models, by a list of seeds. */
 #include "generators.h"
-#include "support/claims.h"
+#include "support/main.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -147,7 +147,7 @@ static void show(exp_page *page, exp_claims *claims, const form *forms)
     exp_page_table_end(page);
 }
 
-int main(int argc, char **argv)
+static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     form forms[FORMS] = {
         {.name = "log", .what = "log (default)"},
@@ -158,26 +158,18 @@ int main(int argc, char **argv)
         {.name = "ratio-plain", .what = "ratio (paper)", .wheel = SL_ABF_RATIO, .energy = SL_ABF_UNWEIGHTED},
         {.name = "log-exact", .what = "log", .newton = SL_ABF_EXACT},
     };
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
+    const sl_status status = try_list(run, forms);
+    if (status == SL_OK) {
+        show(page, claims, forms);
     }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "abf-forms", "Forms of ABF++ compared", &page));
-    exp_page_html(&page,
-                  "<p>Every disk that five default cuts leave of each model in <code>seeds.csv</code> (model and "
-                  "seed), flattened by each form from the same start, at most 40 iterations, |&nabla;L| &le; "
-                  "1e-6 asked for.</p>\n");
-    SL_TRY(try_list(&run, forms));
-    show(&page, &claims, forms);
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    return exp_main(argc, argv, "abf-forms", "Forms of ABF++ compared",
+                    "Every disk that five default cuts leave of each model in <code>seeds.csv</code> (model and "
+                    "seed), flattened by each form from the same start, at most 40 iterations, |&nabla;L| &le; "
+                    "1e-6 asked for.",
+                    EXPECTED_CSV, show_all);
 }

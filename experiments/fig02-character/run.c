@@ -1,7 +1,7 @@
 /* Figure 2: a low-polygon character whose important parts are kept in the atlas, symmetric ones on one image. */
 #include "generators.h"
 #include "image/png.h"
-#include "support/claims.h"
+#include "support/main.h"
 #include "support/pictures.h"
 
 #include <math.h>
@@ -178,21 +178,5 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig02-character", "Figure 2: a low-polygon character", &page));
-    SL_TRY(show(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig02-character", "Figure 2: a low-polygon character", NULL, EXPECTED_CSV, show);
 }

@@ -170,7 +170,7 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    return exp_sheet_main(
+    return exp_main(
         argc, argv, "fig04-border-angle", "Figure 4: an angle on the border untangles an overlap",
         "The paper: \"An alternative way of untangling an overlap is to constrain an angle on the boundary\", and "
         "\"each time the user moves the mouse [...] two iterations of ABF++ are applied to update the result. It "

@@ -51,7 +51,7 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    return exp_sheet_main(
+    return exp_main(
         argc, argv, "fig05-straight", "Figure 5: straightening",
         "The paper: \"When the user selects a sequence of edges with this tool, all the selected edges will be "
         "aligned.\" Here one, two and three lines that do not meet: shortest "

@@ -1,5 +1,6 @@
 /* Figure 7: the spectral cut against principal axes and shape approximation, everything else being equal. */
 #include "methods.h"
+#include "support/main.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -189,21 +190,5 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig07-methods", "Figure 7: other ways to cut", &page));
-    SL_TRY(show_all(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig07-methods", "Figure 7: other ways to cut", NULL, EXPECTED_CSV, show_all);
 }

@@ -1,5 +1,5 @@
 /* Figure 8: segmentations of all meshes at hand, by the default and by the paper's settings. */
-#include "support/claims.h"
+#include "support/main.h"
 #include "support/pictures.h"
 
 #include <math.h>
@@ -259,21 +259,5 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig08-segmentations", "Figure 8: segmentations", &page));
-    SL_TRY(show_all(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig08-segmentations", "Figure 8: segmentations", NULL, EXPECTED_CSV, show_all);
 }

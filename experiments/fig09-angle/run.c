@@ -99,8 +99,8 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    return exp_sheet_main(argc, argv, "fig09-angle", "Figure 9: the angle-on-border tool",
-                          "The paper: \"The border angle at vertex b is constrained through the sum of angles incident "
-                          "to b (purple).\" Here the free chart, then the same vertex at 210, 300 and 360 degrees.",
-                          EXPECTED_CSV, show_all);
+    return exp_main(argc, argv, "fig09-angle", "Figure 9: the angle-on-border tool",
+                    "The paper: \"The border angle at vertex b is constrained through the sum of angles incident "
+                    "to b (purple).\" Here the free chart, then the same vertex at 210, 300 and 360 degrees.",
+                    EXPECTED_CSV, show_all);
 }

@@ -52,7 +52,7 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    return exp_sheet_main(
+    return exp_main(
         argc, argv, "fig10-straightening", "Figure 10: straightening lines that cross",
         "The paper: \"Blue edges are aligned by splitting the constraint g<sub>2</sub> into 2 constraints "
         "g<sub>2</sub><sup>1</sup> and g<sub>2</sub><sup>2</sup>. If two straightening lines cross, "

@@ -148,7 +148,7 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    return exp_sheet_main(
+    return exp_main(
         argc, argv, "fig11-network", "Figure 11: a network of constraints",
         "The paper: \"With our two simple modifications, ABF++ takes a network of geometric constraints into account. "
         "Complex relations between constrained angles (yellow dots) and straight seams (blue edges) are satisfied.\" "

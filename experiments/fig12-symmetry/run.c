@@ -2,7 +2,7 @@
 #include "generators.h"
 #include "image/png.h"
 #include "render/chart_colors.h"
-#include "support/claims.h"
+#include "support/main.h"
 #include "support/pictures.h"
 #include "walker.h"
 
@@ -225,29 +225,21 @@ cleanup:
     return status;
 }
 
+static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
+{
+    sl_status status = SL_OK;
+    result results[MODELS] = {{.name = "walker"}, {.name = "body"}, {.name = "quadruped"}, {.name = "octopus"}};
+    introduce(page);
+    for (int k = 0; k < MODELS; k++) {
+        SL_TRY(show_generated(run, page, claims, &results[k]));
+    }
+    table(page, results);
+    SL_TRY(write_csv(run, results));
+cleanup:
+    return status;
+}
+
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    result results[MODELS] = {{.name = "walker"}, {.name = "body"}, {.name = "quadruped"}, {.name = "octopus"}};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig12-symmetry", "Figure 12: symmetry-aware unwrapping", &page));
-    introduce(&page);
-    for (int k = 0; k < MODELS; k++) {
-        SL_TRY(show_generated(&run, &page, &claims, &results[k]));
-    }
-    table(&page, results);
-    SL_TRY(write_csv(&run, results));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig12-symmetry", "Figure 12: symmetry-aware unwrapping", NULL, EXPECTED_CSV, show_all);
 }

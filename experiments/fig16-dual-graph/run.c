@@ -1,5 +1,6 @@
 /* Figure 16: a quad mesh with its dual graph, and the graph's symmetry. */
 #include "figure.h"
+#include "support/main.h"
 
 #include <stdio.h>
 
@@ -46,21 +47,6 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig16-dual-graph", "Figure 16: the dual graph and its symmetry", &page));
-    SL_TRY(show(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig16-dual-graph", "Figure 16: the dual graph and its symmetry", NULL, EXPECTED_CSV,
+                    show);
 }

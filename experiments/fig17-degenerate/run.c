@@ -1,5 +1,5 @@
 /* Figure 17: the paper's degenerate graph, its whole spectrum, and the eigenvector that the paper meant. */
-#include "support/claims.h"
+#include "support/main.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -249,21 +249,5 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "fig17-degenerate", "Figure 17: a degenerate graph", &page));
-    SL_TRY(show(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "fig17-degenerate", "Figure 17: a degenerate graph", NULL, EXPECTED_CSV, show);
 }

@@ -9,8 +9,8 @@ static bool parse_claim(const char *line, exp_claim *claim)
 {
     char bound[64], when[16];
     *claim = (exp_claim){0};
-    if (sscanf(line, "%63[^,],%63[^,],%3[^,],%63[^,],%15s", claim->mesh, claim->quantity, claim->relation, bound,
-               when) != 5) {
+    if (sscanf(line, "%63[^,],%63[^,],%3[^,],%63[^,],%15[^,],%239[^\n]", claim->mesh, claim->quantity, claim->relation,
+               bound, when, claim->says) < 5) {
         return false;
     }
     const char *end = bound + strlen(bound);
@@ -90,6 +90,11 @@ bool exp_claims_measure(exp_claims *claims, const char *mesh, const char *quanti
     return kept;
 }
 
+bool exp_claim_broken(const exp_claim *claim)
+{
+    return claim->violated > 0 || claim->measured == 0;
+}
+
 int32_t exp_claims_report(const exp_claims *claims, const exp_run *run, exp_page *page)
 {
     int32_t broken = 0;
@@ -100,7 +105,7 @@ int32_t exp_claims_report(const exp_claims *claims, const exp_run *run, exp_page
         if (c->corpus_only && run->corpus == NULL) {
             continue;
         }
-        const bool bad = c->violated > 0 || c->measured == 0;
+        const bool bad = exp_claim_broken(c);
         broken += bad;
         exp_page_row_begin(page, bad);
         exp_page_cell(page, "%s", c->quantity);

@@ -1,9 +1,10 @@
 /* Claims that an experiment's numbers must keep: expected.csv beside its run.c, a line
  *
- *     mesh,quantity,relation,bound,when
+ *     mesh,quantity,relation,bound,when[,what the paper says]
  *
  * mesh: a name, or * for every mesh measured; relation: <= >= = ; when: always, or corpus (only where a folder of
- * meshes was given). Lines that start with # are comments.
+ * meshes was given). What the paper says runs to the end of the line; claims that have it stand in the overview at the
+ * head of the page. Lines that start with # are comments.
  * Layer: experiments. */
 #ifndef SL_EXPERIMENTS_CLAIMS_H
 #define SL_EXPERIMENTS_CLAIMS_H
@@ -12,6 +13,7 @@
 
 typedef struct exp_claim {
     char mesh[64], quantity[64], relation[4];
+    char says[240]; /* the paper's words, "" = none: a check of our own */
     double bound;
     bool corpus_only;
     int32_t measured, violated; /* measurements it was applied to, and that broke it */
@@ -31,8 +33,15 @@ void exp_claims_clear(exp_claims *claims);
 /* Holds a measurement against every claim about it; false when it breaks one. */
 bool exp_claims_measure(exp_claims *claims, const char *mesh, const char *quantity, double value);
 
+/* Whether it is broken: applied and violated, or never measured although it applies. */
+bool exp_claim_broken(const exp_claim *claim);
+
 /* A table of the claims, broken ones red, also on stderr; returns how many are broken. A claim that applies but was
  * never measured is broken. */
 int32_t exp_claims_report(const exp_claims *claims, const exp_run *run, exp_page *page);
+
+/* OUT/claims.csv, and OUT/overview.html: the experiment's rows of the overview. After the report. SL_IO. */
+SL_NODISCARD sl_status exp_claims_write(const exp_claims *claims, exp_run *run, const char *folder,
+                                        const char *heading);
 
 #endif

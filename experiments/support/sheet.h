@@ -5,6 +5,7 @@
 
 #include "param/abf_chart.h"
 #include "support/claims.h"
+#include "support/main.h"
 #include "support/pictures.h"
 
 typedef struct exp_sheet {
@@ -104,11 +105,6 @@ SL_NODISCARD sl_status exp_sheet_draw(exp_run *run, const exp_sheet *sheet, cons
 
 /* The window that holds a layout. */
 void exp_sheet_window(const exp_sheet *sheet, const double *uv, double window[3]);
-
-/* An experiment about charts: claims, page, the charts one after another, the verdict. */
-typedef sl_status exp_show_fn(exp_run *run, exp_page *page, exp_claims *claims);
-int exp_sheet_main(int argc, char **argv, const char *folder, const char *heading, const char *introduction,
-                   const char *expected, exp_show_fn *show);
 
 /* Two pictures of a chart beside one another: free, and with constraints. */
 SL_NODISCARD sl_status exp_show_pair(exp_run *run, exp_page *page, const exp_sheet *sheet, const exp_wish *wish,

@@ -1,6 +1,6 @@
 /* The paper's central claim, measured: every planted mirror of every model, what finds it and what cuts it. */
 #include "mirror.h"
-#include "support/claims.h"
+#include "support/main.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -210,21 +210,5 @@ cleanup:
 
 int main(int argc, char **argv)
 {
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(EXPECTED_CSV, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, "symmetry-table", "Every planted mirror", &page));
-    SL_TRY(measure_all(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
+    return exp_main(argc, argv, "symmetry-table", "Every planted mirror", NULL, EXPECTED_CSV, measure_all);
 }

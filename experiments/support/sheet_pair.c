@@ -4,29 +4,6 @@
 
 enum { WIDTH = 1500, HEIGHT = 700 };
 
-int exp_sheet_main(int argc, char **argv, const char *folder, const char *heading, const char *introduction,
-                   const char *expected, exp_show_fn *show)
-{
-    exp_run run;
-    exp_page page = {0};
-    exp_claims claims = {0};
-    int32_t broken = 0;
-    sl_status status = SL_OK;
-    if (!exp_begin(&run, argc, argv)) {
-        return 2;
-    }
-    SL_TRY(exp_claims_read(expected, &claims, &run.diag));
-    SL_TRY(exp_page_open(&run, folder, heading, &page));
-    exp_page_html(&page, "<p>%s</p>\n", introduction);
-    SL_TRY(show(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
-    SL_TRY(exp_page_close(&run, &page));
-cleanup:
-    exp_page_abandon(&page);
-    exp_claims_clear(&claims);
-    return exp_end(&run, status, broken);
-}
-
 sl_status exp_show_pair(exp_run *run, exp_page *page, const exp_sheet *sheet, const exp_wish *wish, const char *stem,
                         const double *before, const double *after, const char *caption)
 {
