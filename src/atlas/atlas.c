@@ -297,7 +297,7 @@ static bool only_texels_meet(const sl_atlas_check *check)
 
 /* Writes the UVs and judges them; in the rare cases that need it, with all digits (triangles smaller than the quantum)
  * or on a page a little smaller (slivers that only the rounding of a texel count turns over, seen at its centres). */
-static sl_status place_and_verify(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
+sl_status sl_atlas_settle(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
 {
     sl_status status = SL_OK;
     bool quantise = true;
@@ -347,7 +347,7 @@ sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const 
         sl_diag_hint(diag, "raise --resolution or lower --margin");
     }
     SL_TRY(status);
-    SL_TRY(place_and_verify(atlas, def, context));
+    SL_TRY(sl_atlas_settle(atlas, def, context));
     SL_TRY(warn_of_charts(atlas, def));
     *out = atlas;
     return SL_OK;

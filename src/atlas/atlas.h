@@ -61,6 +61,12 @@ typedef struct sl_atlas {
 SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context,
                                  sl_atlas **out, sl_diag *diag);
 
+/* Charts placed by other hands: from segmentation->corner_uv, placement and pack.scale fills corner_uv and
+ * input_corner_uv, as they will be written, and check. Everything else in atlas stands; corner_uv and input_corner_uv
+ * are allocated (nh x 2). May make pack.scale smaller, with the offsets. SL_OUT_OF_MEMORY, SL_BAD_INPUT (a UV is not
+ * finite, or too far out to be judged). */
+SL_NODISCARD sl_status sl_atlas_settle(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context);
+
 void sl_atlas_free(sl_atlas *atlas); /* NULL is a no-op */
 
 /* Number of the chart that chart c shows: itself, or the one it copies. */
