@@ -50,6 +50,7 @@ static sl_status analyze(sl_abf *solver)
     sl_cholesky_def def = sl_cholesky_default();
     def.xyz = xyz;
     SL_TRY(sl_cholesky_analyze(solver->system.M, &def, &solver->factor));
+    SL_TRY(sl_cholesky_reserve(solver->factor)); /* no step allocates */
     solver->work = sl_alloc(sl_cholesky_work_size(solver->factor, 1), sizeof(double));
     status = solver->work == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 cleanup:

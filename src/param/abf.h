@@ -89,8 +89,7 @@ int32_t sl_abf_start_from(sl_abf *solver, const double *angle);
  * (not finite), SL_INFEASIBLE (a region's sum contradicts Gauss-Bonnet); the solver is then unchanged. */
 SL_NODISCARD sl_status sl_abf_set_targets(sl_abf *solver, const double *theta);
 
-/* Up to n Newton steps; stops early when converged or stalled. Allocates nothing itself; sl_cholesky_factor does, its
- * workspace. SL_CANCELLED, SL_OUT_OF_MEMORY. */
+/* Up to n Newton steps; stops early when converged or stalled. Allocates nothing. SL_CANCELLED. */
 SL_NODISCARD sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context);
 
 const sl_abf_info *sl_abf_info_of(const sl_abf *solver); /* borrowed */

@@ -34,9 +34,9 @@ SL_NODISCARD sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_d
 /* The same from angles known already, those of a chart that was cut, sewn or grown a little: `angle` (3 nt [rad], one
  * per patch corner; borrowed for the call) as sl_abf_start_from takes it, NaN where none is known; NULL = none at all.
  * Where that leads to no valid converged state the angles given are forgotten: what follows, and the statuses, are
- * those of sl_abf_chart_create. sl_abf_carry_angles finds `angle` from another patch. It saves a step or none on an easy
- * chart, for the gradient falls linearly from wherever it starts (SL_ABF_EXACT takes 3 to 5 steps instead of 4 to 12);
- * what it saves are the solves of a homotopy where the targets are hard. */
+ * those of sl_abf_chart_create. sl_abf_carry_angles finds `angle` from another patch. It saves a step or none on an
+ * easy chart, for the gradient falls linearly from wherever it starts (SL_ABF_EXACT takes 3 to 5 steps instead of 4 to
+ * 12); what it saves are the solves of a homotopy where the targets are hard. */
 SL_NODISCARD sl_status sl_abf_chart_create_from(const sl_patch *patch, const sl_abf_def *def, const double *angle,
                                                 const sl_context *context, sl_abf_chart **out);
 
@@ -49,13 +49,12 @@ SL_NODISCARD sl_status sl_abf_carry_angles(const sl_patch *from, const double *f
 
 /* The mouse moves: new targets theta (one per sector), two Newton steps, reconstruction (paper, Sec. 4.2). Where that
  * leads to no valid state everything is rolled back. SL_BAD_INPUT, SL_INFEASIBLE (theta; nothing changes),
- * SL_OUT_OF_MEMORY, SL_CANCELLED (the chart then holds what it held). After the first only sl_cholesky_factor
- * allocates, its workspace. */
+ * SL_CANCELLED (the chart then holds what it held). Allocates nothing. */
 SL_NODISCARD sl_status sl_abf_chart_move(sl_abf_chart *chart, const double *theta, const sl_context *context);
 
 /* The button is released: the full criterion. Targets that are not reached in one go are approached step by step from
  * the state held (theta between its sums and the targets), as far as states stay valid: info.reached, info.distance.
- * Statuses as of sl_abf_chart_move. */
+ * Statuses as of sl_abf_chart_move; allocates nothing. */
 SL_NODISCARD sl_status sl_abf_chart_release(sl_abf_chart *chart, const double *theta, const sl_context *context);
 
 const sl_abf_chart_info *sl_abf_chart_info_of(const sl_abf_chart *chart); /* borrowed */

@@ -44,7 +44,7 @@ void sl_abf_evaluate(sl_abf *solver);
 void sl_abf_judge(sl_abf *solver);
 
 /* One damped Newton step; where it cannot be taken the angles stay as they are and info.stalled says so.
- * SL_OUT_OF_MEMORY (the factor, at the first step). */
+ * Allocates nothing. */
 SL_NODISCARD sl_status sl_abf_newton_step(sl_abf *solver);
 
 #endif

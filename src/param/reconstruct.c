@@ -171,6 +171,7 @@ static sl_status analyze(sl_reconstruct *r)
     sl_cholesky_def def = sl_cholesky_default();
     def.xyz = xyz;
     SL_TRY(sl_cholesky_analyze(r->A, &def, &r->factor));
+    SL_TRY(sl_cholesky_reserve(r->factor)); /* sl_reconstruct_solve allocates nothing */
     r->rhs = sl_alloc(2 * (int64_t)r->layout.nfree, sizeof *r->rhs);
     r->work = sl_alloc(sl_cholesky_work_size(r->factor, 1), sizeof *r->work);
     r->uv = sl_alloc(2 * (int64_t)r->layout.patch->nv, sizeof *r->uv);

@@ -22,8 +22,8 @@ SL_NODISCARD sl_status sl_reconstruct_create(const sl_patch *patch, sl_reconstru
  * @param[in]  angle 3 nt, > 0 and with sum pi in each triangle; corrected here where they are not
  * @param[out] uv    nv x 2; unchanged on failure
  *
- * SL_SINGULAR (a pivot lost in rounding), SL_OUT_OF_MEMORY (the factor, at the first call), SL_CANCELLED. One Cholesky
- * factor of 2 nv - 4 unknowns, a few solves. Deterministic.
+ * SL_SINGULAR (a pivot lost in rounding), SL_CANCELLED. One Cholesky factor of 2 nv - 4 unknowns, a few solves.
+ * Allocates nothing. Deterministic.
  * Source: Levy, Petitjean, Ray, Maillot 2002, "Least squares conformal maps for automatic texture atlas generation". */
 SL_NODISCARD sl_status sl_reconstruct_solve(sl_reconstruct *layout, const double *angle, const sl_context *context,
                                             double *uv);

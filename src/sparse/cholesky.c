@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "sparse/cholesky_internal.h"
 #include "sparse/elimination.h"
+#include "sparse/front.h"
 #include "sparse/supernode.h"
 #include "sparse/tasks.h"
 
@@ -388,6 +389,7 @@ void sl_cholesky_release(sl_cholesky *F)
 {
     sl_free(F->L);
     sl_free(F->sign);
+    sl_front_space_clear(&F->space);
     F->L = NULL;
     F->sign = NULL;
 }

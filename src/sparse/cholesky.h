@@ -36,15 +36,20 @@ SL_NODISCARD sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_de
 /* Numeric phase; call again when values change but the pattern does not. SL_NOT_POSITIVE_DEFINITE (LL') or SL_SINGULAR
  * (LDL') sets *bad_column (nullable) to the column of A at fault; F may then be refactored or freed. SL_BAD_INPUT: a
  * value is not finite, or the pattern is another. SL_OUT_OF_MEMORY: L is allocated by the first call, workspace by
- * each. */
+ * each, unless sl_cholesky_reserve did. */
 SL_NODISCARD sl_status sl_cholesky_factor(sl_cholesky *F, const sl_csc *A, int32_t *bad_column);
+
+/* Allocates L and the workspace now (sl_cholesky_factor_bytes in all), to stay until sl_cholesky_release: factoring
+ * without workers then allocates nothing, for those who factor again and again. SL_OUT_OF_MEMORY; F is as good as
+ * before then. */
+SL_NODISCARD sl_status sl_cholesky_reserve(sl_cholesky *F);
 
 /* The same of A - sigma I, which is not formed. context: workers for the elimination tree, nullable; the bytes of L do
  * not depend on how many. SL_CANCELLED: its progress function said so; F may be refactored or freed. */
 SL_NODISCARD sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma,
                                                   const sl_context *context, int32_t *bad_column);
 
-/* Frees L and the signs; the analysis stays, for inertia counts and further factorisations. */
+/* Frees L, the signs and what is reserved; the analysis stays, for inertia counts and further factorisations. */
 void sl_cholesky_release(sl_cholesky *F);
 
 /* X: n x nrhs, column-major, leading dimension n; B on entry, inv(A) B on return. work: sl_cholesky_work_size(F, nrhs)

@@ -10,6 +10,13 @@
  * for both. */
 #define SL_SOLVE_WIDTH 16
 
+/* Memory of one walk over the fronts. */
+typedef struct sl_front_space {
+    double *updates;   /* stacks of update matrices */
+    double *spare;     /* of the kernels */
+    int32_t *relative; /* max_family: rows of the children in their parent's numbering */
+} sl_front_space;
+
 /* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel (laid out as kernels.h says) has one row for
  * each of these columns, then one for each of below[below_first[s]] .. below[below_first[s + 1] - 1], ascending.
  * Supernodes are numbered from the leaves up: first those of the bottom part, then those of the top, either in
@@ -34,6 +41,7 @@ struct sl_cholesky {
     int64_t *panel;       /* supernodes + 1: where a panel begins in L */
     double *L;            /* NULL before the first factorisation */
     int8_t *sign;         /* n: signs of D, NULL for LL' or before the first factorisation */
+    sl_front_space space; /* of sl_cholesky_reserve; updates == NULL: none */
 
     /* Entries of A by supernode: those of s are entry_first[s] .. entry_first[s + 1] - 1, entry_from[e] their place in
      * A, entry_to[e] their place in the panel. Those in the panel's first column come first. */

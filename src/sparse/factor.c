@@ -38,6 +38,17 @@ static sl_status make_room(sl_cholesky *F)
     return F->L != NULL && (F->sign != NULL || F->kind != SL_FACTOR_LDLT) ? SL_OK : SL_OUT_OF_MEMORY;
 }
 
+sl_status sl_cholesky_reserve(sl_cholesky *F)
+{
+    sl_status status = SL_OK;
+    SL_TRY(make_room(F));
+    if (F->space.updates == NULL) {
+        SL_TRY(sl_front_space_init(F, F->max_update, &F->space));
+    }
+cleanup:
+    return status;
+}
+
 sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma, const sl_context *context,
                                      int32_t *bad_column)
 {
@@ -52,6 +63,7 @@ sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sig
                         .pivoting = {F->pivot_rtol * diagonal, 0.0},
                         .L = F->L,
                         .sign = F->sign,
+                        .space = F->space.updates != NULL ? &F->space : NULL,
                         .bad = -1};
     SL_TRY(sl_factor_fronts(&job, context));
     if (job.bad != -1) {

@@ -11,36 +11,58 @@ static const double shared_work = 4e6;
 /* Progress is reported whenever so many multiplications are done: tens of milliseconds. */
 static const double report_work = 5e8;
 
-/* One walk's own memory. Update matrices live on two stacks that grow from the ends of one array: those of supernodes
+/* One walk's state. Update matrices live on two stacks that grow from the ends of one array: those of supernodes
  * at even depth from the left, at odd depth from the right, so that a parent's is not made where its children's lie. */
 typedef struct walker {
     const sl_front_job *job;
     const sl_context *context; /* for large fronts, NULL = serial */
-    double *updates;
+    sl_front_space own;        /* unless the job brings its space */
+    const sl_front_space *space;
     int64_t room, left, right; /* doubles: all, used on either side */
     double **kept;             /* by task: update matrices of their roots; NULL = they are on the stacks */
     double *panel;             /* where panels are made when they are not kept */
-    double *spare;             /* of the kernels */
-    int32_t *relative;         /* max_family: rows of the children in their parent's numbering */
 } walker;
+
+sl_status sl_front_space_init(const sl_cholesky *F, int64_t room, sl_front_space *space)
+{
+    *space = (sl_front_space){sl_alloc(room, sizeof *space->updates),
+                              sl_alloc(sl_front_spare(F->max_width), sizeof *space->spare),
+                              sl_alloc(F->max_family, sizeof *space->relative)};
+    if (space->updates == NULL || space->spare == NULL || space->relative == NULL) {
+        sl_front_space_clear(space);
+        return SL_OUT_OF_MEMORY;
+    }
+    return SL_OK;
+}
+
+void sl_front_space_clear(sl_front_space *space)
+{
+    sl_free(space->updates);
+    sl_free(space->spare);
+    sl_free(space->relative);
+    *space = (sl_front_space){0};
+}
 
 static void walker_clear(walker *w)
 {
-    sl_free(w->updates);
+    sl_front_space_clear(&w->own);
     sl_free(w->panel);
-    sl_free(w->spare);
-    sl_free(w->relative);
 }
 
-static sl_status walker_init(walker *w, const sl_front_job *job, int64_t room)
+/* given: space for `room` doubles, NULL = it is allocated. The walker must stay where it is. */
+static sl_status walker_init(walker *w, const sl_front_job *job, int64_t room, const sl_front_space *given)
 {
-    const sl_cholesky *F = job->F;
-    *w = (walker){.job = job, .room = room};
-    w->updates = sl_alloc(room, sizeof *w->updates);
-    w->panel = sl_alloc(job->L == NULL ? F->max_panel : 0, sizeof *w->panel);
-    w->spare = sl_alloc(sl_front_spare(F->max_width), sizeof *w->spare);
-    w->relative = sl_alloc(F->max_family, sizeof *w->relative);
-    return w->updates != NULL && w->panel != NULL && w->spare != NULL && w->relative != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+    sl_status status = SL_OK;
+    *w = (walker){.job = job, .room = room, .space = given != NULL ? given : &w->own};
+    if (given == NULL) {
+        SL_TRY(sl_front_space_init(job->F, room, &w->own));
+    }
+    if (job->L == NULL) {
+        w->panel = sl_alloc(job->F->max_panel, sizeof *w->panel);
+        status = w->panel != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+    }
+cleanup:
+    return status;
 }
 
 static double *push_update(walker *w, int32_t s)
@@ -50,10 +72,10 @@ static double *push_update(walker *w, int32_t s)
     SL_ASSERT(w->left + w->right + size <= w->room);
     if (F->odd[s]) {
         w->right += size;
-        return w->updates + w->room - w->right;
+        return w->space->updates + w->room - w->right;
     }
     w->left += size;
-    return w->updates + w->left - size;
+    return w->space->updates + w->left - size;
 }
 
 /* Those of children, last first, so that *depth doubles on their stack are passed. */
@@ -64,8 +86,8 @@ static const double *find_update(const walker *w, int32_t c, int64_t *depth)
         return w->kept[F->task[c]];
     }
     *depth += sl_packed_size(sl_supernode_below(F, c));
-    return F->odd[c] ? w->updates + w->room - w->right + *depth - sl_packed_size(sl_supernode_below(F, c))
-                     : w->updates + w->left - *depth;
+    return F->odd[c] ? w->space->updates + w->room - w->right + *depth - sl_packed_size(sl_supernode_below(F, c))
+                     : w->space->updates + w->left - *depth;
 }
 
 static void pop_updates(walker *w, int32_t s)
@@ -231,7 +253,7 @@ static int32_t factor_supernode(walker *w, int32_t s)
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
     double *panel = job->L != NULL ? job->L + F->panel[s] : w->panel, *own = push_update(w, s);
     int8_t *sign = job->sign != NULL ? job->sign + F->first[s] : NULL;
-    int32_t *relative = w->relative;
+    int32_t *relative = w->space->relative;
     int64_t depth = 0;
     memset(panel, 0, (size_t)(F->panel[s + 1] - F->panel[s]) * sizeof *panel);
     scatter_entries(job, s, panel);
@@ -240,13 +262,13 @@ static int32_t factor_supernode(walker *w, int32_t s)
         add_to_panel(F, find_update(w, c, &depth), sl_supernode_below(F, c), relative, s, panel);
         relative += sl_supernode_below(F, c);
     }
-    shared_front f = {F->kernels, panel, w->spare, own, sign, width, below, 0};
+    shared_front f = {F->kernels, panel, w->space->spare, own, sign, width, below, 0};
     const int32_t bad = factor_panel(w, &f, job->pivoting);
     if (bad != -1) {
         return F->first[s] + bad;
     }
     sl_parallel_for(sharing(w, &f), sl_slab_pairs(below), 2, update_some, &f);
-    relative = w->relative;
+    relative = w->space->relative;
     depth = 0;
     for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
         add_to_update(find_update(w, c, &depth), sl_supernode_below(F, c), relative, width, own);
@@ -319,11 +341,12 @@ static void run_task(void *user, int64_t begin, int64_t end, int32_t t)
     const int64_t size = sl_packed_size(sl_supernode_below(F, root));
     walker w;
     sl_status status = SL_OK;
-    SL_TRY(walker_init(&w, tasks->job, room_of_task(F, t)));
+    SL_TRY(walker_init(&w, tasks->job, room_of_task(F, t), NULL));
     for (int32_t k = F->task_begin[t]; k < F->task_end[t] && tasks->bad[t] == -1; k++) {
         tasks->bad[t] = factor_supernode(&w, F->walk[k]);
     }
-    tasks->kept[t] = sl_copy(F->odd[root] ? w.updates + w.room - size : w.updates, size, sizeof **tasks->kept);
+    tasks->kept[t] =
+        sl_copy(F->odd[root] ? w.space->updates + w.room - size : w.space->updates, size, sizeof **tasks->kept);
     SL_TRY(tasks->kept[t] != NULL ? SL_OK : SL_OUT_OF_MEMORY);
 cleanup:
     walker_clear(&w);
@@ -366,7 +389,7 @@ sl_status sl_factor_fronts(sl_front_job *job, const sl_context *context)
     walker w = {0};
     sl_status status = SL_OK;
     job->bad = -1;
-    SL_TRY(walker_init(&w, job, F->max_update));
+    SL_TRY(walker_init(&w, job, F->max_update, job->space));
     if (parallel && F->task_count > 0) {
         SL_TRY(factor_in_parallel(&w, job, context));
     } else {

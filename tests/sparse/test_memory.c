@@ -153,6 +153,57 @@ static void the_factor_takes_the_bytes_foretold(void **state)
     }
 }
 
+/* Both kinds, several matrices, a failure on the way: bytes as without. */
+static void a_reserved_factor_allocates_nothing(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3e6);
+    for (int kind = 0; kind < MATRIX_KINDS; kind++) {
+        sl_csc *A = random_spd((matrix_kind)kind, 300, 0.3, &rng);
+        sl_cholesky_def def = sl_cholesky_default();
+        sl_cholesky *F = NULL, *plain = NULL;
+        int64_t kept;
+        def.kind = kind % 2 == 0 ? SL_FACTOR_LLT : SL_FACTOR_LDLT;
+        assert_int_equal(sl_cholesky_analyze(A, &def, &F), SL_OK);
+        assert_int_equal(sl_cholesky_analyze(A, &def, &plain), SL_OK);
+        const int64_t foretold = sl_cholesky_factor_bytes(F, &kept);
+        sl_status status = SL_OUT_OF_MEMORY;
+        for (int allowed = 0; status != SL_OK && allowed < 20; allowed++) {
+            atomic_store(&allocated, 0);
+            atomic_store(&countdown, allowed);
+            status = sl_cholesky_reserve(F);
+            assert_int_equal(status, atomic_exchange(&countdown, -1) < 0 ? SL_OUT_OF_MEMORY : SL_OK);
+            if (status != SL_OK) {
+                sl_cholesky_release(F);
+            }
+        }
+        assert_int_equal(status, SL_OK);
+        assert_in_range(atomic_load(&allocated), foretold, foretold + 16);
+        double *x = random_doubles(A->ncols, &rng), *work = sl_alloc(sl_cholesky_work_size(F, 1), sizeof *work);
+        double *y = sl_copy(x, A->ncols, sizeof *x);
+        for (int round = 0; round < 3; round++) {
+            assert_int_equal(sl_cholesky_factor(plain, A, NULL), SL_OK);
+            atomic_store(&countdown, 0); /* the next one would fail */
+            assert_int_equal(sl_cholesky_reserve(F), SL_OK);
+            assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK);
+            assert_int_equal(atomic_exchange(&countdown, -1), 0);
+            sl_cholesky_solve(plain, x, 1, work);
+            sl_cholesky_solve(F, y, 1, work);
+            assert_memory_equal(x, y, (size_t)A->ncols * sizeof *x);
+        }
+        sl_cholesky_release(F);
+        atomic_store(&allocated, 0);
+        assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_OK); /* all of it anew */
+        assert_in_range(atomic_load(&allocated), foretold, foretold + 16);
+        sl_free(x);
+        sl_free(y);
+        sl_free(work);
+        sl_cholesky_free(F);
+        sl_cholesky_free(plain);
+        sl_csc_free(A);
+    }
+}
+
 static void inherited_orderings_report_memory_too(void **state)
 {
     (void)state;
@@ -174,6 +225,7 @@ int main(void)
         cmocka_unit_test(each_failed_allocation_is_told_and_leaves_nothing_behind),
         cmocka_unit_test(workers_survive_failed_allocations),
         cmocka_unit_test(the_factor_takes_the_bytes_foretold),
+        cmocka_unit_test(a_reserved_factor_allocates_nothing),
         cmocka_unit_test(inherited_orderings_report_memory_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
