@@ -76,5 +76,6 @@ void sl_segmentation_free(sl_segmentation *segmentation)
     sl_free(segmentation->corner_uv);
     sl_free(segmentation->source);
     sl_free(segmentation->split);
+    sl_free(segmentation->cut_after);
     sl_free(segmentation);
 }

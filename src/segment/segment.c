@@ -22,6 +22,7 @@ typedef struct run {
     bool share; /* symmetries are looked for */
     sl_split *split;
     int64_t nsplit, split_capacity;
+    int32_t *cut_after; /* nh, see sl_segmentation */
     int64_t facets_done;
     int32_t merges;
 } run;
@@ -34,6 +35,7 @@ static void run_clear(run *r)
     sl_free(r->place);
     sl_sharing_clear(&r->sharing);
     sl_free(r->split);
+    sl_free(r->cut_after);
     sl_job_list_clear(&r->pending);
     sl_job_list_clear(&r->done);
 }
@@ -58,11 +60,21 @@ cleanup:
     return status;
 }
 
+/* Cuts an edge after `splits` others were made. */
+static void cut_edge(run *r, int32_t h, int64_t splits)
+{
+    const int32_t t = r->work->twin[h];
+    if (t >= 0 && r->cut_after[h] < 0) {
+        r->cut_after[h] = r->cut_after[t] = (int32_t)splits;
+    }
+    sl_mesh_cut_edge(r->work, h);
+}
+
 /* A chart that stays: its inner cuts are made, its place in the list of results taken. */
 static sl_status finish(run *r, sl_chart_job *job)
 {
     for (int32_t k = 0; k < job->joined.count; k++) {
-        sl_mesh_cut_edge(r->work, job->joined.halfedge[k]);
+        cut_edge(r, job->joined.halfedge[k], r->nsplit);
     }
     r->facets_done += job->count;
     return sl_job_list_push(&r->done, job);
@@ -103,7 +115,7 @@ static sl_status descend(run *r, const sl_chart_job *job, sl_job_list *next)
         if (mark != 0) {
             r->first_cut[h] = r->first_cut[r->work->twin[h]] = mark;
         }
-        sl_mesh_cut_edge(r->work, h);
+        cut_edge(r, h, r->nsplit - 1);
     }
     return sl_part_jobs(job, next);
 }
@@ -215,10 +227,12 @@ static sl_status run_create(sl_mesh *mesh, const sl_triangulation *triangulation
     *r = (run){.mesh = mesh, .triangulation = triangulation, .def = def, .context = context};
     r->first_cut = sl_calloc(mesh->nh, sizeof *r->first_cut);
     r->place = sl_alloc(mesh->nf, sizeof *r->place);
-    if (r->first_cut == NULL || r->place == NULL) {
+    r->cut_after = sl_alloc(mesh->nh, sizeof *r->cut_after);
+    if (r->first_cut == NULL || r->place == NULL || r->cut_after == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     memset(r->place, -1, (size_t)mesh->nf * sizeof *r->place);
+    memset(r->cut_after, -1, (size_t)mesh->nh * sizeof *r->cut_after);
     return sl_mesh_copy(mesh, &r->work);
 }
 
@@ -234,6 +248,8 @@ static sl_status deliver(run *r, sl_mesh *mesh, sl_segmentation **out)
     (*out)->split = r->split;
     (*out)->nsplit = (int32_t)r->nsplit;
     r->split = NULL;
+    (*out)->cut_after = r->cut_after;
+    r->cut_after = NULL;
     (*out)->merges = r->merges;
     (*out)->sharing = r->sharing.info;
     if (r->sharing.info.copies > 0) {

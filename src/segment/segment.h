@@ -120,8 +120,10 @@ typedef struct sl_segmentation {
     sl_sharing_info sharing;
     int32_t nsplit;
     sl_split *split;
-    int32_t merges; /* charts sewn together */
-    bool paired;    /* triangles were paired */
+    int32_t *cut_after; /* nh: how many splits were made before this edge was cut, 0 .. nsplit; -1 = never, or only as
+                           the copy of another */
+    int32_t merges;     /* charts sewn together */
+    bool paired;        /* triangles were paired */
     double paired_fraction;
 } sl_segmentation;
 

@@ -71,6 +71,44 @@ static void rules_and_the_paper_s_settings_end_in_valid_charts(void **state)
     }
 }
 
+/* Without sewing and symmetry: cutting edge by edge in the order that is told gives, after each split, as many pieces
+ * as the splits so far made, and in the end the seams there are. */
+static void the_order_of_cutting_is_told(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5ec);
+    for (int trial = 0; trial < 3 * test_multiplier(); trial++) {
+        sl_mesh *mesh = shape(&rng, trial), *again = NULL;
+        sl_triangulation *t = test_triangulate(mesh);
+        sl_segment_def def = sl_segment_default();
+        def.sew = false;
+        def.symmetry = SL_SYMMETRY_USE_OFF;
+        def.flatten.max_stretch = 1.004;
+        assert_int_equal(sl_mesh_copy(mesh, &again), SL_OK);
+        sl_segmentation *s = segment(mesh, t, &def, 2);
+        int32_t *label = sl_alloc(mesh->nf, sizeof *label), pieces = 1, count = 0;
+        assert_non_null(label);
+        assert_true(s->nsplit > 0);
+        for (int32_t k = 0; k <= s->nsplit; k++) {
+            assert_int_equal(sl_mesh_components(again, label, &count), SL_OK);
+            assert_int_equal(count, pieces);
+            for (int32_t h = 0; h < again->nh; h++) {
+                if (s->cut_after[h] == k) {
+                    sl_mesh_cut_edge(again, h);
+                }
+            }
+            pieces += k < s->nsplit ? s->split[k].parts - 1 : 0;
+        }
+        assert_int_equal(pieces, s->nchart);
+        assert_memory_equal(again->sew, mesh->sew, (size_t)mesh->nh * sizeof *mesh->sew);
+        sl_free(label);
+        sl_segmentation_free(s);
+        sl_triangulation_free(t);
+        sl_mesh_free(mesh);
+        sl_mesh_free(again);
+    }
+}
+
 /* Everything but what a solver's info may hold in padding. */
 static void check_same(const sl_mesh *a, const sl_segmentation *s, const sl_mesh *b, const sl_segmentation *r)
 {
@@ -320,6 +358,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_ends_in_valid_charts),
+        cmocka_unit_test(the_order_of_cutting_is_told),
         cmocka_unit_test(rules_and_the_paper_s_settings_end_in_valid_charts),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(minimised_charts_are_relaxed_to_the_end),
