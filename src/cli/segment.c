@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/render_animate.h"
 #include "cli/segment_options.h"
 #include "image/colormap.h"
 #include "meshio/ply_export.h"
@@ -13,18 +14,19 @@
 
 static const cli_verb verb = {
     .name = "segment",
-    .usage = "seamlab segment IN [-o OUT.ply] [--labels OUT.csv] [--seams OUT.csv] [options]",
+    .usage = "seamlab segment IN [-o OUT.ply] [--labels OUT.csv] [--seams OUT.csv] [--animate OUT.png] [options]",
     .summary = "Cuts a mesh into charts that can be laid flat. Without a file to write, the labels\n"
                "(facet,chart) go to standard output.",
     .examples = "  seamlab segment model.obj -o charts.ply\n"
                 "  seamlab segment model.obj --labels charts.csv --seams seams.csv\n"
-                "  seamlab segment model.obj --preset paper --json\n",
+                "  seamlab segment model.obj --preset paper --json\n"
+                "  seamlab segment model.obj --animate splits.png\n",
     .min_files = 1,
     .max_files = 1,
 };
 
 typedef struct segment_outputs {
-    const char *ply, *labels, *seams;
+    const char *ply, *labels, *seams, *animation;
 } segment_outputs;
 
 static sl_status write_labels(const char *path, const sl_segmentation *seg, int32_t nf, sl_diag *diag)
@@ -83,7 +85,7 @@ static sl_status write_outputs(const segment_outputs *out, const sl_polygons *po
     if (out->seams != NULL) {
         SL_TRY(write_seams(out->seams, mesh, diag));
     }
-    if (out->labels != NULL || (out->ply == NULL && out->seams == NULL && !json)) {
+    if (out->labels != NULL || (out->ply == NULL && out->seams == NULL && out->animation == NULL && !json)) {
         SL_TRY(write_labels(out->labels != NULL ? out->labels : "-", seg, polygons->nf, diag));
     }
 cleanup:
@@ -109,6 +111,27 @@ static void print_summary(cli_run *run, const sl_mesh *mesh, const sl_segmentati
     }
 }
 
+/* The animation shows the atlas that grows, so the whole way is gone. */
+static int animate_file(cli_run *run, const sl_polygons *polygons, const sl_segment_def *def,
+                        const segment_outputs *out)
+{
+    sl_diag diag = sl_diag_none();
+    sl_atlas *atlas = NULL;
+    sl_apng *apng = NULL;
+    sl_status status = SL_OK;
+    sl_atlas_def whole = sl_atlas_default();
+    whole.segment = *def;
+    SL_TRY(sl_unwrap(polygons, &whole, &run->context, &atlas, &diag));
+    SL_TRY(cli_animate_segmentation(atlas, &run->context, &apng));
+    SL_TRY(write_outputs(out, polygons, atlas->mesh, atlas->segmentation, run->json, &diag));
+    SL_TRY(sl_apng_write(out->animation, apng, &diag));
+    print_summary(run, atlas->mesh, atlas->segmentation);
+cleanup:
+    sl_apng_free(apng);
+    sl_atlas_free(atlas);
+    return cli_fail(run, status, &diag);
+}
+
 static int segment_file(cli_run *run, const char *path, const sl_segment_def *def, const segment_outputs *out)
 {
     sl_diag diag = sl_diag_none();
@@ -123,6 +146,11 @@ static int segment_file(cli_run *run, const char *path, const sl_segment_def *de
         return code;
     }
     sl_meshfile_polygons(file, &polygons);
+    if (out->animation != NULL) {
+        const int animated = animate_file(run, &polygons, def, out);
+        sl_meshfile_free(file);
+        return animated;
+    }
     SL_TRY(sl_mesh_build(&polygons, &mesh, NULL, &diag));
     SL_TRY(sl_triangulation_create(mesh, &triangulation));
     SL_TRY(sl_segment(mesh, triangulation, def, &run->context, &seg));
@@ -138,7 +166,7 @@ cleanup:
 
 int cli_segment(int argc, char **argv)
 {
-    enum { OWN = 3, ALL = OWN + CLI_SEGMENT_OPTIONS + CLI_COMMON_OPTIONS };
+    enum { OWN = 4, ALL = OWN + CLI_SEGMENT_OPTIONS + CLI_COMMON_OPTIONS };
     cli_run run = {.verb = verb.name};
     cli_segment_options segment;
     segment_outputs out = {0};
@@ -148,6 +176,7 @@ int cli_segment(int argc, char **argv)
         {"output", 'o', CLI_TEXT, &out.ply, 0, 0, NULL, "OUT.ply", "the mesh with a colour a chart"},
         {"labels", 0, CLI_TEXT, &out.labels, 0, 0, NULL, "OUT.csv", "facet,chart"},
         {"seams", 0, CLI_TEXT, &out.seams, 0, 0, NULL, "OUT.csv", "the cut edges by their vertices"},
+        {"animate", 0, CLI_TEXT, &out.animation, 0, 0, NULL, "OUT.png", "an animated PNG: split by split"},
     };
     cli_option options[ALL];
     cli_segment_preset(&segment, argc, argv);
@@ -160,6 +189,10 @@ int cli_segment(int argc, char **argv)
     }
     if (out.ply != NULL && !cli_has_extension(out.ply, ".ply")) {
         fprintf(stderr, "seamlab segment: -o writes a coloured .ply, not %s; `unwrap` writes .obj\n", out.ply);
+        return CLI_USAGE;
+    }
+    if (out.animation != NULL && strcmp(out.animation, "-") != 0 && !cli_has_extension(out.animation, ".png")) {
+        fprintf(stderr, "seamlab segment: --animate writes an animated .png, not %s\n", out.animation);
         return CLI_USAGE;
     }
     code = cli_begin(&run);

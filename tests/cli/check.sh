@@ -94,6 +94,9 @@ printf '3 2\n' >lines.txt
 expect 0 "$seamlab" render thumbs.obj -o lines.png --size 80x40 --constraints lines.txt --quiet
 printf '0 4\n' >lines.txt
 expect 3 "$seamlab" render thumbs.obj -o no.png --size 80x40 --constraints lines.txt --quiet
+expect 0 "$seamlab" segment $mesh --animate splits.png --quiet
+grep -qa acTL splits.png && grep -qa fdAT splits.png || complain "splits.png is no animation"
+expect 2 "$seamlab" segment $mesh --animate splits.gif
 expect 2 "$seamlab" render $mesh
 expect 2 "$seamlab" render $mesh -o no.gif
 expect 2 "$seamlab" render $mesh -o no.png --size 0x9
