@@ -1,7 +1,6 @@
 #include "render/frame.h"
 #include "base/memory.h"
 #include "geom/vec3.h"
-#include "image/color.h"
 #include "render/frame_internal.h"
 
 #include <math.h>
@@ -30,16 +29,24 @@ static void set_normals(sl_frame *f)
             f->normal[3 * (int64_t)v[k / 3] + k % 3] += (float)n[k % 3];
         }
     }
+    for (int32_t v = 0; v < f->nv; v++) {
+        float *n = f->normal + 3 * (int64_t)v;
+        const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        const float scale = length > 0.0f && length < INFINITY ? 1.0f / length : 0.0f;
+        for (int k = 0; k < 3; k++) {
+            n[k] = scale > 0.0f ? n[k] * scale : 0.0f;
+        }
+    }
 }
 
-static void set_tables(sl_frame *f)
+/* For the lists of triangles that may show: a chunk's may be one longer than the chunk. */
+static sl_status make_room(sl_frame *f)
 {
-    for (int k = 0; k < 256; k++) {
-        f->linear[k] = (float)sl_srgb_to_linear(k / 255.0);
-    }
-    for (int k = 0; k < 4096; k++) {
-        f->encoded[k] = (uint8_t)(255.0 * sl_srgb_from_linear(k / 4095.0) + 0.5);
-    }
+    const int64_t chunks = sl_chunk_count(f->nt, SL_FRAME_CHUNK);
+    f->kept = sl_alloc(chunks * (SL_FRAME_CHUNK + 1), sizeof *f->kept);
+    f->span = sl_alloc(chunks * (SL_FRAME_CHUNK + 1), sizeof *f->span);
+    f->kept_count = sl_alloc(chunks, sizeof *f->kept_count);
+    return f->kept != NULL && f->span != NULL && f->kept_count != NULL ? SL_OK : SL_OUT_OF_MEMORY;
 }
 
 sl_status sl_frame_create(const sl_frame_def *def, sl_frame **out)
@@ -58,23 +65,22 @@ sl_status sl_frame_create(const sl_frame_def *def, sl_frame **out)
     f->xyz = sl_alloc(def->nv, 3 * sizeof *f->xyz);
     f->normal = sl_alloc(def->nv, 3 * sizeof *f->normal);
     f->tri = sl_alloc(def->nt, 3 * sizeof *f->tri);
-    f->rgb = sl_alloc(def->nt, 3);
-    f->vertex = sl_alloc(def->nv, sizeof *f->vertex);
-    f->span = sl_alloc(def->nt, sizeof *f->span);
-    if (f->xyz == NULL || f->normal == NULL || f->tri == NULL || f->rgb == NULL || f->vertex == NULL ||
-        f->span == NULL) {
+    f->color = sl_alloc(def->nt, sizeof *f->color);
+    f->vertex = sl_calloc(def->nv, sizeof *f->vertex);
+    SL_TRY(make_room(f));
+    if (f->xyz == NULL || f->normal == NULL || f->tri == NULL || f->color == NULL || f->vertex == NULL) {
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
-    for (int64_t i = 0; i < 3 * (int64_t)def->nt; i++) {
-        f->tri[i] = def->tri[i];
-        f->rgb[i] = def->rgb != NULL ? def->rgb[i] : PLAIN;
+    if (def->nt > 0) {
+        memcpy(f->tri, def->tri, 3 * (size_t)def->nt * sizeof *f->tri);
     }
+    sl_frame_set_colors(f, def->rgb);
     if (def->nv > 0) {
         sl_frame_set_positions(f, def->xyz);
     }
     SL_TRY(def->corner_uv != NULL ? sl_frame_set_uv(f, def->corner_uv) : SL_OK);
-    set_tables(f);
+    f->kernels = sl_frame_kernels_best();
     *out = f;
     f = NULL;
 cleanup:
@@ -94,19 +100,29 @@ void sl_frame_free(sl_frame *f)
     sl_free(f->normal);
     sl_free(f->tri);
     sl_free(f->uv);
-    sl_free(f->rgb);
-    sl_free(f->zid);
+    sl_free(f->color);
+    sl_free(f->depth);
+    sl_free(f->seen);
     sl_free(f->vertex);
+    sl_free(f->kept);
     sl_free(f->span);
+    sl_free(f->kept_count);
     sl_free(f->place);
     sl_free(f->band_first);
     sl_free(f->banded);
+    sl_free(f->slot);
     sl_free(f);
 }
 
 void sl_frame_set_colors(sl_frame *frame, const uint8_t *rgb)
 {
-    memcpy(frame->rgb, rgb, 3 * (size_t)frame->nt);
+    for (int64_t t = 0; t < frame->nt; t++) {
+        uint8_t byte[4] = {PLAIN, PLAIN, PLAIN, 255};
+        if (rgb != NULL) {
+            memcpy(byte, rgb + 3 * t, 3);
+        }
+        memcpy(&frame->color[t], byte, sizeof byte);
+    }
 }
 
 sl_status sl_frame_set_uv(sl_frame *frame, const double *corner_uv)
@@ -157,8 +173,9 @@ typedef struct draw_task {
 static void draw_surface(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
     const draw_task *task = user;
-    sl_frame_raster(task->frame, chunk, (int32_t)begin, (int32_t)end);
-    sl_frame_shade(task->frame, (int32_t)begin, (int32_t)end, task->rgba);
+    const sl_frame *f = task->frame;
+    f->kernels->raster(f, chunk, (int32_t)begin, (int32_t)end);
+    f->kernels->shade(f, chunk, (int32_t)begin, (int32_t)end, task->rgba);
 }
 
 static void draw_lines(void *user, int64_t begin, int64_t end, int32_t chunk)
@@ -168,6 +185,22 @@ static void draw_lines(void *user, int64_t begin, int64_t end, int32_t chunk)
     sl_frame_draw_lines(task->frame, (int32_t)begin, (int32_t)end, task->rgba);
 }
 
+static bool make_buffers(sl_frame *f, int64_t words)
+{
+    if (words > f->words) {
+        sl_free(f->depth);
+        sl_free(f->seen);
+        f->words = 0;
+        f->depth = sl_alloc(words, sizeof *f->depth);
+        f->seen = sl_alloc(words, sizeof *f->seen);
+        if (f->depth == NULL || f->seen == NULL) {
+            return false;
+        }
+        f->words = words;
+    }
+    return true;
+}
+
 sl_status sl_frame_draw(sl_frame *f, const sl_camera *camera, const sl_frame_style *style, int32_t width,
                         int32_t height, const sl_context *context, uint8_t *rgba)
 {
@@ -175,20 +208,15 @@ sl_status sl_frame_draw(sl_frame *f, const sl_camera *camera, const sl_frame_sty
         return SL_BAD_INPUT;
     }
     f->width = f->height = 0; /* nothing to pick unless all goes well */
-    const int64_t pixels = (int64_t)width * height;
-    if (pixels > f->pixels) {
-        sl_free(f->zid);
-        f->pixels = 0;
-        f->zid = sl_alloc(pixels, sizeof *f->zid);
-        if (f->zid == NULL) {
-            return SL_OUT_OF_MEMORY;
-        }
-        f->pixels = pixels;
+    const int32_t stride = (width + SL_FRAME_PAD - 1) / SL_FRAME_PAD * SL_FRAME_PAD + SL_FRAME_PAD;
+    if (!make_buffers(f, (int64_t)stride * height)) {
+        return SL_OUT_OF_MEMORY;
     }
     f->camera = *camera;
     f->style = *style;
     f->width = width;
     f->height = height;
+    f->stride = stride;
     f->bands = sl_chunk_count(height, SL_FRAME_BAND);
     const sl_status status = sl_frame_project(f, context);
     if (status != SL_OK) {
@@ -205,7 +233,7 @@ sl_frame_hit sl_frame_pick(const sl_frame *f, int32_t x, int32_t y)
 {
     sl_frame_hit hit = {.triangle = -1};
     if (x >= 0 && y >= 0 && x < f->width && y < f->height) {
-        hit.triangle = sl_visible_triangle(f->zid[(int64_t)y * f->width + x]);
+        hit.triangle = sl_frame_triangle(f, x, y);
     }
     if (hit.triangle >= 0) {
         sl_frame_barycentrics(f, hit.triangle, x, y, hit.bary);

@@ -18,17 +18,13 @@ static double surface_key(const sl_frame *f, double x, double y)
     if (ix < 0 || iy < 0 || ix >= f->width || iy >= f->height) {
         return 2.0;
     }
-    const uint64_t zid = f->zid[(int64_t)iy * f->width + ix];
-    const int32_t t = sl_visible_triangle(zid);
-    const double key = sl_visible_key(zid);
-    if (t < 0) {
+    const int32_t t = sl_frame_triangle(f, ix, iy);
+    const double key = (double)f->depth[(int64_t)iy * f->stride + ix];
+    if (t < 0 || sl_frame_is_off(f, t)) {
         return key;
     }
     const sl_frame_vertex *a = &f->vertex[f->tri[3 * (int64_t)t]], *b = &f->vertex[f->tri[3 * (int64_t)t + 1]],
                           *c = &f->vertex[f->tri[3 * (int64_t)t + 2]];
-    if (a->x == SL_FRAME_FAR || b->x == SL_FRAME_FAR || c->x == SL_FRAME_FAR) {
-        return key;
-    }
     const double bx = (double)b->x - a->x, by = (double)b->y - a->y, cx = (double)c->x - a->x, cy = (double)c->y - a->y;
     const double bk = (double)b->key - (double)a->key, ck = (double)c->key - (double)a->key;
     const double scale = SL_SUBPIXELS / (bx * cy - cx * by);

@@ -1,0 +1,11 @@
+/* The kernels of the frame for processors with AVX2. */
+#if defined(__x86_64__)
+#define SL_LANES_AVX2 1
+#include "render/frame_kernel_keep.h"
+#include "render/frame_kernel_raster.h"
+#include "render/frame_kernel_shade.h"
+
+const sl_frame_kernels sl_frame_kernels_avx2 = {"AVX2", keep, raster, shade};
+#else
+typedef int frame_kernels_avx2_is_for_x86_64;
+#endif

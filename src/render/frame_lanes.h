@@ -1,0 +1,54 @@
+/* Eight numbers at a time. The kernels of the frame are written once, in these terms, and compiled twice: for the
+ * registers of AVX2 and for any machine. Every operation is one of IEEE 754 or of integers, so both give the same
+ * bytes.
+ *
+ *     f8_min(a, b)    a < b ? a : b, so b where one is NaN; f8_max alike
+ *     f8_whole        towards 0; what does not fit has no meaning
+ *     x_less, _equal  all bits set where true; x_select(mask, a, b) is a there and b elsewhere; signs: a bit a lane
+ *     f8_bits         the same bits as integers; i8_bits as floats
+ *     i8_without      a & ~b; i8_up and i8_down shift, i8_down keeps the sign
+ *     i8_tint         four bytes a lane, as tint
+ *     four_words      out[i], lane k = word i of those at base + at[k] bytes; put_four_words: to rows a stride apart
+ *
+ * SL_LANES_AVX2 chooses. Layer: render, private. */
+#ifndef SL_RENDER_FRAME_LANES_H
+#define SL_RENDER_FRAME_LANES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Sanitised builds leave inlining to the compiler: instrumented and in one function, kernels cost it minutes. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define LANES_INLINE unused
+#endif
+#endif
+#if !defined(LANES_INLINE) && defined(__SANITIZE_ADDRESS__)
+#define LANES_INLINE unused
+#elif !defined(LANES_INLINE)
+#define LANES_INLINE always_inline
+#endif
+
+/* sRGB's curve is (1 + 0.055) light^(1/2.4) - 0.055 but for its darkest colours, so a byte under less light is
+ * (byte + 14.03) power - 14.03 with power = light^(1/2.4), for all three channels alike. Bytes in 1/128, 14.03 as 1795;
+ * power in 1/65536, below 65536. */
+enum { TINT_BITS = 7, TINT_TOE = 1795 };
+
+static inline uint32_t tint(uint32_t color, uint32_t power)
+{
+    const uint32_t rest = TINT_TOE - (1u << (TINT_BITS - 1));
+    uint32_t tinted = 0;
+    for (int bit = 0; bit < 32; bit += 8) {
+        const uint32_t value = ((((color >> bit) & 0xffu) << TINT_BITS) + TINT_TOE) * power >> 16;
+        tinted |= (value > rest ? value - rest : 0u) >> TINT_BITS << bit;
+    }
+    return tinted;
+}
+
+#if defined(SL_LANES_AVX2)
+#include "render/frame_lanes_avx2.h"
+#else
+#include "render/frame_lanes_portable.h"
+#endif
+
+#endif
