@@ -4,24 +4,19 @@
 #define SL_EXPERIMENTS_HAND_H
 
 #include "support/claims.h"
+#include "support/spectrum.h"
 
 enum { HAND_VECTORS = 30, HAND_RULES = 3 };
 
-/* Largest component, its graph, its spectrum, the cuts they propose. */
 typedef struct hand_work {
     exp_mesh input;
-    sl_mesh *mesh;
-    sl_triangulation *triangulation;
-    int32_t *faces, face_count;
-    sl_facet_graph *graph;
-    sl_spectrum *spectrum;
-    sl_cut_candidate candidate[HAND_VECTORS - 1]; /* of vectors 1 .. */
-    const char *tag;                              /* in file names: "hand", "corpus-hand" */
-    const char *title;                            /* in claims and headings: "hand", "hand (corpus)" */
-    int32_t chosen[HAND_RULES];                   /* vector by rule, in the order of sl_cut_rule */
+    exp_spectrum s;
+    const char *tag;            /* in file names: "hand", "corpus-hand" */
+    const char *title;          /* in claims and headings: "hand", "hand (corpus)" */
+    int32_t chosen[HAND_RULES]; /* vector by rule, in the order of sl_cut_rule */
 } hand_work;
 
-/* spectrum.c: loads the mesh and computes everything above but `chosen`. */
+/* spectrum.c: loads the mesh and computes its spectrum. */
 SL_NODISCARD sl_status hand_compute(exp_run *run, const exp_source *source, hand_work *w);
 void hand_clear(hand_work *w);
 

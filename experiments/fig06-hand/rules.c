@@ -14,9 +14,9 @@ static int32_t best_candidate(const hand_work *w, double power)
 {
     int32_t best = -1;
     double best_score = -1.0;
-    for (int32_t k = 1; k < w->spectrum->count; k++) {
-        const sl_cut_candidate *c = &w->candidate[k - 1];
-        const double score = c->seam_length * pow(w->spectrum->lambda[k], power);
+    for (int32_t k = 1; k < w->s.spectrum->count; k++) {
+        const sl_cut_candidate *c = &w->s.candidate[k - 1];
+        const double score = c->seam_length * pow(w->s.spectrum->lambda[k], power);
         if (c->passes && score > best_score) {
             best = k;
             best_score = score;
@@ -39,9 +39,9 @@ static sl_status segment_copy(exp_run *run, const hand_work *w, sl_cut_rule rule
         def.smooth = 0;
         def.join = false;
     }
-    sl_status status = sl_mesh_copy(w->mesh, mesh);
+    sl_status status = sl_mesh_copy(w->s.mesh, mesh);
     if (status == SL_OK) {
-        status = sl_segment(*mesh, w->triangulation, &def, &run->context, seg);
+        status = sl_segment(*mesh, w->s.triangulation, &def, &run->context, seg);
     }
     return status;
 }
@@ -59,7 +59,7 @@ static int32_t invalid_charts(const sl_segmentation *seg)
 static int32_t first_vector(const hand_work *w, const sl_segmentation *seg)
 {
     for (int32_t k = 0; k < seg->nsplit; k++) {
-        if (seg->split[k].facets == w->face_count) {
+        if (seg->split[k].facets == w->s.face_count) {
             return seg->split[k].vector;
         }
     }
@@ -96,7 +96,7 @@ static sl_status show_rule(exp_run *run, exp_page *page, exp_claims *claims, han
                  sl_atlas_seam_length(mesh) / sl_mesh_diagonal(mesh));
         exp_claims_measure(claims, w->title, "invalid charts", invalid_charts(seg));
     }
-    SL_TRY(exp_draw_charts(run, mesh, w->triangulation, seg->face_chart, &view, &picture, file));
+    SL_TRY(exp_draw_charts(run, mesh, w->s.triangulation, seg->face_chart, &view, &picture, file));
     exp_page_figure(page, "", file, alt, caption);
 cleanup:
     sl_segmentation_free(seg);
@@ -120,12 +120,12 @@ static sl_status show_row(exp_run *run, exp_page *page, exp_claims *claims, hand
 /* How well a vector's sides are the front and the back: share of the area seen along z that lies on its own side. */
 static double front_and_back(const hand_work *w, int32_t vector)
 {
-    const double *v = w->spectrum->vectors + (int64_t)vector * w->spectrum->n;
+    const double *v = w->s.spectrum->vectors + (int64_t)vector * w->s.spectrum->n;
     double agree = 0.0, all = 0.0;
-    for (int32_t i = 0; i < w->face_count; i++) {
+    for (int32_t i = 0; i < w->s.face_count; i++) {
         double n[3];
-        sl_mesh_face_vector_area(w->mesh, w->faces[i], n);
-        agree += v[w->graph->node[i]] >= 0.0 ? n[2] : -n[2];
+        sl_mesh_face_vector_area(w->s.mesh, w->s.faces[i], n);
+        agree += v[w->s.graph->node[i]] >= 0.0 ? n[2] : -n[2];
         all += fabs(n[2]);
     }
     return 0.5 + 0.5 * fabs(agree) / all;
@@ -151,7 +151,7 @@ sl_status hand_rules(exp_run *run, exp_page *page, exp_claims *claims, hand_work
     exp_claims_measure(claims, w->title, "rules that cut where the candidates say",
                        (w->chosen[SL_RULE_LONGEST] == longest) + (w->chosen[SL_RULE_LENGTH_LAMBDA] == scaled));
     exp_claims_measure(claims, w->title, "vector taken by lookahead passes",
-                       ahead > 0 && w->candidate[ahead - 1].passes);
+                       ahead > 0 && w->s.candidate[ahead - 1].passes);
     exp_claims_measure(claims, w->title, "front and back apart by the longest seam", share);
 cleanup:
     return status;

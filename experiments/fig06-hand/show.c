@@ -6,38 +6,16 @@
 
 enum { VECTOR_WIDTH = 300, VECTOR_HEIGHT = 330 };
 
-/* The vector on the facets and the edges between its signs. value: nf; edge: nh. */
-static void paint_vector(const hand_work *w, int32_t vector, uint8_t *side, double *value, int32_t *edge,
-                         int32_t *edges)
-{
-    const double *v = w->spectrum->vectors + (int64_t)vector * w->spectrum->n;
-    *edges = 0;
-    for (int32_t f = 0; f < w->mesh->nf; f++) {
-        value[f] = NAN;
-    }
-    for (int32_t i = 0; i < w->face_count; i++) {
-        value[w->faces[i]] = v[w->graph->node[i]];
-    }
-    sl_spectrum_side(w->spectrum, vector, side);
-    for (int32_t i = 0; i < w->graph->graph.n; i++) {
-        for (int32_t p = w->graph->graph.first[i]; p < w->graph->graph.first[i + 1]; p++) {
-            if (side[i] == 1 && side[w->graph->graph.adj[p]] == 0) {
-                edge[(*edges)++] = w->graph->halfedge[p];
-            }
-        }
-    }
-}
-
 static void caption_vector(const hand_work *w, int32_t k, char *text, size_t size)
 {
     if (k == 0) {
         snprintf(text, size, "v<sub>0</sub>: constant, no cut");
         return;
     }
-    const sl_cut_candidate *c = &w->candidate[k - 1];
+    const sl_cut_candidate *c = &w->s.candidate[k - 1];
     snprintf(text, size, "v<sub>%d</sub>, &lambda; = %.3e<br>%d + %d parts, seam %.2f<br><b>%s</b>", k,
-             w->spectrum->lambda[k], c->positive_parts, c->negative_parts, c->seam_length / sl_mesh_diagonal(w->mesh),
-             c->passes ? "passes" : "filtered out");
+             w->s.spectrum->lambda[k], c->positive_parts, c->negative_parts,
+             c->seam_length / sl_mesh_diagonal(w->s.mesh), c->passes ? "passes" : "filtered out");
 }
 
 static sl_status show_vectors(exp_run *run, exp_page *page, const hand_work *w)
@@ -45,21 +23,22 @@ static sl_status show_vectors(exp_run *run, exp_page *page, const hand_work *w)
     sl_status status = SL_OK;
     const sl_view view = exp_view_of("hand");
     const sl_picture picture = exp_picture(run, VECTOR_WIDTH, VECTOR_HEIGHT);
-    uint8_t *side = sl_alloc(w->graph->graph.n, sizeof *side);
-    double *value = sl_alloc(w->mesh->nf, sizeof *value);
-    int32_t *edge = sl_alloc(w->mesh->nh, sizeof *edge), edges = 0;
+    uint8_t *side = sl_alloc(w->s.graph->graph.n, sizeof *side);
+    double *value = sl_alloc(w->s.mesh->nf, sizeof *value);
+    int32_t *edge = sl_alloc(w->s.mesh->nh, sizeof *edge), edges = 0;
     if (side == NULL || value == NULL || edge == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
     exp_page_html(page, "<div class=\"grid\">\n");
-    for (int32_t k = 0; k < w->spectrum->count; k++) {
+    for (int32_t k = 0; k < w->s.spectrum->count; k++) {
         char file[64], alt[64], caption[256];
         snprintf(file, sizeof file, "%s-v%02d.png", w->tag, k);
         snprintf(alt, sizeof alt, "eigenvector %d of the %s", k, w->title);
         caption_vector(w, k, caption, sizeof caption);
-        paint_vector(w, k, side, value, edge, &edges);
-        SL_TRY(exp_draw_values(run, w->mesh, w->triangulation, value, edge, edges, &view, &picture, file));
-        exp_page_figure(page, k > 0 && w->candidate[k - 1].passes ? "yes" : "", file, alt, caption);
+        exp_spectrum_values(&w->s, k, value);
+        edges = exp_spectrum_seam(&w->s, k, side, edge);
+        SL_TRY(exp_draw_values(run, w->s.mesh, w->s.triangulation, value, edge, edges, &view, &picture, file));
+        exp_page_figure(page, k > 0 && w->s.candidate[k - 1].passes ? "yes" : "", file, alt, caption);
     }
     exp_page_html(page, "</div>\n");
 cleanup:
@@ -73,8 +52,8 @@ static void show_findings(exp_page *page, const hand_work *w, int32_t passing)
 {
     char list[256] = "";
     size_t at = 0;
-    for (int32_t k = 1; k < w->spectrum->count; k++) {
-        if (w->candidate[k - 1].passes && at + 8 < sizeof list) {
+    for (int32_t k = 1; k < w->s.spectrum->count; k++) {
+        if (w->s.candidate[k - 1].passes && at + 8 < sizeof list) {
             at += (size_t)snprintf(list + at, sizeof list - at, "%s%d", at > 0 ? ", " : "", k);
         }
     }
@@ -82,23 +61,24 @@ static void show_findings(exp_page *page, const hand_work *w, int32_t passing)
         page,
         "<p>%d facets, %d eigenvectors, largest residual %.1e. The connectivity filter keeps %d of %d: %s. The "
         "others oscillate along directions already found: more than two nodal parts.</p>\n",
-        w->face_count, w->spectrum->count, w->spectrum->info.max_residual, passing, w->spectrum->count - 1, list);
+        w->s.face_count, w->s.spectrum->count, w->s.spectrum->info.max_residual, passing, w->s.spectrum->count - 1,
+        list);
 }
 
 static void measure_spectrum(exp_claims *claims, const hand_work *w, int32_t *passing)
 {
     double beyond = -HUGE_VAL;
     *passing = 0;
-    for (int32_t k = 1; k < w->spectrum->count; k++) {
-        const sl_cut_candidate *c = &w->candidate[k - 1];
+    for (int32_t k = 1; k < w->s.spectrum->count; k++) {
+        const sl_cut_candidate *c = &w->s.candidate[k - 1];
         *passing += c->passes;
         beyond = fmax(beyond, c->positive_parts + c->negative_parts - (k + 1));
     }
-    exp_claims_measure(claims, w->title, "converged", w->spectrum->info.converged);
-    exp_claims_measure(claims, w->title, "largest residual", w->spectrum->info.max_residual);
-    exp_claims_measure(claims, w->title, "fiedler passes", w->candidate[0].passes);
+    exp_claims_measure(claims, w->title, "converged", w->s.spectrum->info.converged);
+    exp_claims_measure(claims, w->title, "largest residual", w->s.spectrum->info.max_residual);
+    exp_claims_measure(claims, w->title, "fiedler passes", w->s.candidate[0].passes);
     exp_claims_measure(claims, w->title, "nodal parts of the Fiedler vector",
-                       w->candidate[0].positive_parts + w->candidate[0].negative_parts);
+                       w->s.candidate[0].positive_parts + w->s.candidate[0].negative_parts);
     exp_claims_measure(claims, w->title, "Courant: most nodal parts beyond k + 1", beyond);
     exp_claims_measure(claims, w->title, "vectors that pass", *passing);
 }

@@ -1,7 +1,5 @@
 #include "methods.h"
 
-#include "geom/vec3.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,38 +21,6 @@ sl_segment_def method_def(int setting, int method)
     return def;
 }
 
-double seam_turning(const sl_mesh *mesh)
-{
-    int32_t *degree = sl_calloc(mesh->nv, sizeof *degree), *ends = sl_alloc(2 * (int64_t)mesh->nv, sizeof *ends);
-    double sum = 0.0;
-    int32_t corners = 0;
-    for (int32_t h = 0; degree != NULL && ends != NULL && h < mesh->nh; h++) {
-        const int32_t v = mesh->origin[h], w = sl_target(mesh, h);
-        if (mesh->sew[h] > h) {
-            for (int k = 0; k < 2; k++) {
-                const int32_t at = k == 0 ? v : w, other = k == 0 ? w : v;
-                if (degree[at] < 2) {
-                    ends[2 * (int64_t)at + degree[at]] = other;
-                }
-                degree[at]++;
-            }
-        }
-    }
-    for (int32_t v = 0; degree != NULL && ends != NULL && v < mesh->nv; v++) {
-        if (degree[v] == 2) {
-            double in[3], out[3], normal[3];
-            sl_vec3_sub(mesh->xyz + 3 * (int64_t)v, mesh->xyz + 3 * (int64_t)ends[2 * (int64_t)v], in);
-            sl_vec3_sub(mesh->xyz + 3 * (int64_t)ends[2 * (int64_t)v + 1], mesh->xyz + 3 * (int64_t)v, out);
-            sl_vec3_cross(in, out, normal);
-            sum += atan2(sl_vec3_norm(normal), sl_vec3_dot(in, out));
-            corners++;
-        }
-    }
-    sl_free(degree);
-    sl_free(ends);
-    return corners > 0 ? sum / corners * 180.0 / acos(-1.0) : 0.0;
-}
-
 outcome measure(const sl_mesh *mesh, const sl_segmentation *seg, double seconds)
 {
     outcome o = {.splits = seg->nsplit};
@@ -70,7 +36,7 @@ outcome measure(const sl_mesh *mesh, const sl_segmentation *seg, double seconds)
     o.metric[CHARTS] = seg->nchart;
     o.metric[SEAM] = sl_atlas_seam_length(mesh) / sl_mesh_diagonal(mesh);
     o.metric[STRETCH] = area > 0.0 ? sqrt(square / area) : 0.0;
-    o.metric[JAGGED] = seam_turning(mesh);
+    o.metric[JAGGED] = exp_seam_turning(mesh);
     o.metric[SECONDS] = seconds;
     return o;
 }

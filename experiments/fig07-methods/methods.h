@@ -4,6 +4,7 @@
 
 #include "support/claims.h"
 #include "support/pictures.h"
+#include "support/turning.h"
 
 /* Where cuts come from. The first is what the others are compared with. */
 enum { SPECTRAL, PCA, VSA_TWO, VSA_ERROR, METHODS };
@@ -36,9 +37,6 @@ typedef struct model {
 
 /* mesh: its seams are cut; charts of the segmentation. */
 outcome measure(const sl_mesh *mesh, const sl_segmentation *seg, double seconds);
-
-/* Mean angle, in degrees, by which the seams turn at a vertex that two of their edges meet; 0 without any. */
-double seam_turning(const sl_mesh *mesh);
 
 /* log2 of a metric over that of the spectral cuts. */
 double log_ratio(const model *m, int setting, int method, int metric);
