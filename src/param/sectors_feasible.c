@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "param/regions_internal.h"
+#include "param/sectors_flow_internal.h"
 
 static const double pi = 3.14159265358979323846;
 static const double degrees = 57.29577951308232;
@@ -40,27 +41,48 @@ static sl_status check_sectors(const sl_sector_table *table, const int32_t *name
     return SL_OK;
 }
 
-/* " 3, 17, 20, ..." of the vertices and of the constraints that prescribe something in region r. */
-static void list_region(const sl_sector_table *table, const sl_regions *regions, int32_t r, const int32_t *name,
-                        char *vertices, char *origins, size_t size)
+/* Is sector s one of those to be listed? */
+typedef bool member_fn(const void *user, int32_t s);
+
+/* " 3, 17, 20, ..." of the vertices of the sectors that are members, those that somebody prescribed first, and of the
+ * constraints they come from. Returns the first vertex. */
+static int32_t list_members(const sl_sector_table *table, member_fn *member, const void *user, const int32_t *name,
+                            char *vertices, char *origins, size_t size)
 {
-    int32_t listed = 0, last = -1, origins_listed = 0;
+    const int32_t count = table->view.count;
+    int32_t listed = 0, first = -1, last = -1, origins_listed = 0;
     size_t at = 0, to = 0;
     vertices[0] = origins[0] = '\0';
-    for (int32_t s = 0; s < table->view.count && listed <= LISTED; s++) {
-        if (regions->of_sector[s] != r || table->origin[s] < 0) {
+    for (int64_t i = 0; i < 2 * (int64_t)count && listed <= LISTED; i++) {
+        const int32_t s = (int32_t)(i % count), v = table->vertex[s];
+        const bool prescribed = table->origin[s] >= 0;
+        if (prescribed != (i < count) || !member(user, s)) {
             continue;
         }
+        first = first < 0 ? v : first;
         const char *comma = listed > 0 ? "," : "";
-        at += (size_t)(listed < LISTED
-                           ? snprintf(&vertices[at], size - at, "%s %d", comma, name_of(name, table->vertex[s]))
-                           : snprintf(&vertices[at], size - at, ", ..."));
+        at += (size_t)(listed < LISTED ? snprintf(&vertices[at], size - at, "%s %d", comma, name_of(name, v))
+                                       : snprintf(&vertices[at], size - at, ", ..."));
         listed++;
-        if (table->origin[s] != last && origins_listed < LISTED) {
+        if (prescribed && table->origin[s] != last && origins_listed < LISTED) {
             last = table->origin[s];
             to += (size_t)snprintf(&origins[to], size - to, "%s %d", origins_listed++ > 0 ? "," : "", last + 1);
         }
     }
+    return first;
+}
+
+/* Sectors that prescribe something in one region. */
+typedef struct region_members {
+    const sl_sector_table *table;
+    const sl_regions *regions;
+    int32_t region;
+} region_members;
+
+static bool in_region(const void *user, int32_t s)
+{
+    const region_members *m = user;
+    return m->regions->of_sector[s] == m->region && m->table->origin[s] >= 0;
 }
 
 static sl_status refuse_region(const sl_sector_table *table, const sl_regions *regions, int32_t r, const int32_t *name,
@@ -68,7 +90,8 @@ static sl_status refuse_region(const sl_sector_table *table, const sl_regions *r
 {
     char vertices[96], origins[96];
     const double excess = regions->excess[r] * degrees;
-    list_region(table, regions, r, name, vertices, origins, sizeof vertices);
+    const region_members members = {table, regions, r};
+    const int32_t first = list_members(table, in_region, &members, name, vertices, origins, sizeof vertices);
     if (regions->free[r] == 0) {
         sl_diag_reason(diag, "the angles around a region of %d triangles are %.6g degrees too %s (vertices%s)",
                        regions->triangles[r], fabs(excess), excess > 0.0 ? "large" : "small", vertices);
@@ -80,13 +103,48 @@ static sl_status refuse_region(const sl_sector_table *table, const sl_regions *r
     }
     sl_diag_hint(diag, "by Gauss-Bonnet the turns of a region's border add up to 360 degrees; constraints%s take part",
                  origins);
-    for (int32_t s = 0; s < table->view.count && diag != NULL; s++) {
-        if (regions->of_sector[s] == r && table->origin[s] >= 0) {
-            diag->element = table->vertex[s];
-            break;
-        }
+    if (diag != NULL && first >= 0) {
+        diag->element = first;
     }
     return SL_INFEASIBLE;
+}
+
+static bool in_cut(const void *user, int32_t s)
+{
+    const sl_sector_cut *cut = user;
+    return cut->in_cut[s] != 0;
+}
+
+static sl_status refuse_cut(const sl_sector_table *table, const sl_sector_cut *cut, const int32_t *name, sl_diag *diag)
+{
+    char vertices[96], origins[96];
+    const int32_t first = list_members(table, in_cut, cut, name, vertices, origins, sizeof vertices);
+    sl_diag_reason(diag,
+                   cut->starved ? "%d sectors ask for %.6g degrees together, their %d triangles have %.6g (vertices%s)"
+                                : "%d sectors hold %.6g degrees together, the %d triangles that lie in no other have "
+                                  "%.6g (vertices%s)",
+                   cut->sectors, cut->asked * degrees, cut->triangles, cut->held * degrees, vertices);
+    if (origins[0] != '\0') {
+        sl_diag_hint(diag, "constraints%s compete; ask for less there or refine the mesh", origins);
+    } else {
+        sl_diag_hint(diag, "no constraint takes part: the mesh itself has no such angles; refine it there");
+    }
+    if (diag != NULL) {
+        diag->element = first;
+    }
+    return SL_INFEASIBLE;
+}
+
+/* Sectors that are possible one by one but not together. */
+static sl_status check_together(const sl_patch *patch, const sl_sector_table *table, const int32_t *name, sl_diag *diag)
+{
+    sl_sector_cut cut;
+    sl_status status = sl_sectors_cut(patch, &table->view, least_room, &cut);
+    if (status == SL_OK && cut.found) {
+        status = refuse_cut(table, &cut, name, diag);
+        sl_free(cut.in_cut);
+    }
+    return status;
 }
 
 sl_status sl_sectors_feasible(const sl_patch *patch, const sl_sector_table *table, const int32_t *name, sl_diag *diag)
@@ -106,6 +164,7 @@ sl_status sl_sectors_feasible(const sl_patch *patch, const sl_sector_table *tabl
             SL_TRY(refuse_region(table, &regions, r, name, diag));
         }
     }
+    SL_TRY(check_together(patch, table, name, diag));
 cleanup:
     sl_regions_clear(&regions);
     return status;
