@@ -87,7 +87,12 @@ static const char *symmetry_use_name(sl_symmetry_use use)
 
 static const char *method_name(sl_cut_method method)
 {
-    return method == SL_METHOD_SPECTRAL ? "spectral" : method == SL_METHOD_PCA ? "pca" : "vsa";
+    static const char *const names[] = {
+        [SL_METHOD_SPECTRAL] = "spectral",   [SL_METHOD_PCA] = "pca",       [SL_METHOD_VSA] = "vsa",
+        [SL_METHOD_FIEDLER] = "fiedler",     [SL_METHOD_RANDOM] = "random", [SL_METHOD_ISOCHARTS] = "isocharts",
+        [SL_METHOD_EMBEDDING] = "embedding",
+    };
+    return names[method];
 }
 
 static const char *split_symmetry_name(sl_split_symmetry symmetry)

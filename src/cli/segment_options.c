@@ -31,8 +31,10 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
     const cli_option entries[CLI_SEGMENT_OPTIONS] = {
         {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper", NULL,
          "paper = as printed; other options override"},
-        {"method", 0, CLI_CHOICE, &o->method, 0, 0, "spectral|pca|vsa", NULL,
-         "cuts by eigenvectors, or by principal axes or proxies to compare with"},
+        {"method", 0, CLI_CHOICE, &o->method, 0, 0, "spectral|pca|vsa|fiedler|random|isocharts|embedding", NULL,
+         "how a chart is cut in parts: the others are there to compare with"},
+        {"clusters", 0, CLI_INT, &o->def.clusters, 2, 1000000, NULL, "N", "embedding: parts of the first cut (2)"},
+        {"seed", 0, CLI_INT, &o->def.seed, 0, INT32_MAX, NULL, "N", "random numbers of random and embedding (1)"},
         {"vsa-regions", 0, CLI_INT, &o->def.vsa_regions, 0, 1000000, NULL, "N",
          "proxies of the first vsa cut, 0 = by error (0)"},
         {"vsa-error", 0, CLI_REAL, &o->def.vsa_error, 0.0, 4.0, NULL, "E",

@@ -16,8 +16,7 @@ static sl_status cut_by_axes(const sl_piece *piece, const sl_facet_graph *graph,
     return SL_OK;
 }
 
-/* Area of each triangle and its vector area, summed over the facets of every node. */
-static void sum_areas(const sl_piece *piece, const sl_facet_graph *graph, double *area, double *vector)
+void sl_node_areas(const sl_piece *piece, const sl_facet_graph *graph, double *area, double *vector)
 {
     const sl_mesh *m = piece->mesh;
     const sl_triangulation *t = piece->triangulation;
@@ -33,7 +32,7 @@ static void sum_areas(const sl_piece *piece, const sl_facet_graph *graph, double
             sl_vec3_sub(p[2], p[0], b);
             sl_vec3_cross(a, b, n);
             area[node] += 0.5 * sl_vec3_norm(n);
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < 3 && vector != NULL; k++) {
                 vector[3 * node + k] += 0.5 * n[k];
             }
         }
@@ -50,7 +49,7 @@ static sl_status cut_by_proxies(const sl_piece *piece, const sl_facet_graph *gra
     if (area == NULL || vector == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    sum_areas(piece, graph, area, vector);
+    sl_node_areas(piece, graph, area, vector);
     const sl_vsa_surface surface = {.graph = &graph->graph, .area = area, .vector = vector};
     SL_TRY(sl_vsa_partition(&surface, &how, context, label, &choice->vector, &choice->lambda));
     choice->candidates = 1;
@@ -83,6 +82,35 @@ cleanup:
     return status;
 }
 
+/* Two sides, and no refinement of the method's own. */
+static bool can_be_smoothed(sl_cut_method method, const sl_choice *choice)
+{
+    const bool halves = method == SL_METHOD_PCA || method == SL_METHOD_FIEDLER || choice->vector == 2;
+    return halves && method != SL_METHOD_ISOCHARTS;
+}
+
+static sl_status label_nodes(const sl_piece *piece, const sl_facet_graph *graph, const sl_segment_def *def,
+                             const sl_context *context, int32_t *label, sl_choice *choice)
+{
+    switch (def->method) {
+    case SL_METHOD_PCA:
+        return cut_by_axes(piece, graph, label, choice);
+    case SL_METHOD_VSA:
+        return cut_by_proxies(piece, graph, def, context, label, choice);
+    case SL_METHOD_FIEDLER:
+        return sl_fiedler_labels(graph, def, context, label, choice);
+    case SL_METHOD_RANDOM:
+        return sl_random_labels(piece, graph, def, label, choice);
+    case SL_METHOD_ISOCHARTS:
+        return sl_isocharts_labels(piece, graph, def, context, label, choice);
+    case SL_METHOD_EMBEDDING:
+        return sl_embedding_labels(piece, graph, def, context, label, choice);
+    case SL_METHOD_SPECTRAL:
+        break;
+    }
+    return SL_INTERNAL;
+}
+
 sl_status sl_choose_baseline(const sl_piece *piece, const sl_facet_graph *graph, const sl_segment_def *def,
                              const sl_context *context, sl_choice *choice)
 {
@@ -93,12 +121,8 @@ sl_status sl_choose_baseline(const sl_piece *piece, const sl_facet_graph *graph,
     if (choice->side == NULL || label == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    if (def->method == SL_METHOD_PCA) {
-        SL_TRY(cut_by_axes(piece, graph, label, choice));
-    } else {
-        SL_TRY(cut_by_proxies(piece, graph, def, context, label, choice));
-    }
-    if (choice->found && (def->method == SL_METHOD_PCA || choice->vector == 2)) {
+    SL_TRY(label_nodes(piece, graph, def, context, label, choice));
+    if (choice->found && can_be_smoothed(def->method, choice)) {
         SL_TRY(smooth(piece, graph, def->smooth, label, &choice->smoothed));
     }
     if (choice->found) {

@@ -8,9 +8,24 @@
 
 /* Chooses a cut by def->method, which is not spectral. choice->found = false (and nothing owned): the method has none
  * (every facet lies on the same side of every plane). graph: the facet graph of the whole piece, connected.
- * SL_OUT_OF_MEMORY, SL_CANCELLED. */
+ * SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL, SL_LIMIT. */
 SL_NODISCARD sl_status sl_choose_baseline(const sl_piece *piece, const sl_facet_graph *graph, const sl_segment_def *def,
                                           const sl_context *context, sl_choice *choice);
+
+/* The cuts of the methods; label: a number a node, count of them and all but `side` filled into choice. See each. */
+SL_NODISCARD sl_status sl_fiedler_labels(const sl_facet_graph *graph, const sl_segment_def *def,
+                                         const sl_context *context, int32_t *label, sl_choice *choice);
+SL_NODISCARD sl_status sl_random_labels(const sl_piece *piece, const sl_facet_graph *graph, const sl_segment_def *def,
+                                        int32_t *label, sl_choice *choice);
+SL_NODISCARD sl_status sl_isocharts_labels(const sl_piece *piece, const sl_facet_graph *graph,
+                                           const sl_segment_def *def, const sl_context *context, int32_t *label,
+                                           sl_choice *choice);
+SL_NODISCARD sl_status sl_embedding_labels(const sl_piece *piece, const sl_facet_graph *graph,
+                                           const sl_segment_def *def, const sl_context *context, int32_t *label,
+                                           sl_choice *choice);
+
+/* Adds to area (n) the area, and to vector (3 n, nullable) the vector area, of the triangles of every node. */
+void sl_node_areas(const sl_piece *piece, const sl_facet_graph *graph, double *area, double *vector);
 
 /* Mean and covariance of a surface, each point of it counted alike. */
 typedef struct sl_principal_axes {

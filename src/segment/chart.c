@@ -125,6 +125,7 @@ static sl_status split_piece(const sl_recursion *r, sl_piece *piece, const int32
     sl_choice choice = {0};
     sl_segment_def def = *r->def;
     def.vsa_regions = job->depth > 0 ? 2 : def.vsa_regions; /* many proxies once, then as any other cut */
+    def.clusters = job->depth > 0 ? 2 : def.clusters;
     SL_TRY(sl_choose_cut(piece, partner, &def, r->context, &choice));
     if (!choice.found) { /* nothing can be cut: the chart stays as it is, and says so */
         job->done = job->capped = true;

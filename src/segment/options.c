@@ -11,6 +11,8 @@ sl_segment_def sl_segment_default(void)
 {
     sl_segment_def def = {.method = SL_METHOD_SPECTRAL,
                           .vsa_error = 0.05,
+                          .clusters = 2,
+                          .seed = 1,
                           .rule = SL_RULE_LOOKAHEAD,
                           .vectors = 30,
                           .pairing = SL_PAIR_AUTO,

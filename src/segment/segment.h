@@ -21,8 +21,12 @@ typedef enum sl_pairing { SL_PAIR_AUTO, SL_PAIR_ON, SL_PAIR_OFF } sl_pairing;
 /* Where cuts come from. Recursion until valid and flattening are the same for all. */
 typedef enum sl_cut_method {
     SL_METHOD_SPECTRAL, /* eigenvectors of the facet graph (paper) */
-    SL_METHOD_PCA, /* the plane across the shortest principal axis, through the centre: the "equator" of Sec. 3.3 */
-    SL_METHOD_VSA  /* variational shape approximation: proxies of a chart (Cohen-Steiner et al. 2004) */
+    SL_METHOD_PCA,     /* the plane across the shortest principal axis, through the centre: the "equator" of Sec. 3.3 */
+    SL_METHOD_VSA,     /* variational shape approximation: proxies of a chart (Cohen-Steiner et al. 2004) */
+    SL_METHOD_FIEDLER, /* the first eigenvector that is not constant, always (Fiedler 1975) */
+    SL_METHOD_RANDOM,  /* Voronoi cells of two random facets: a floor */
+    SL_METHOD_ISOCHARTS, /* clusters around the extremes of embedded geodesic distances (Zhou et al. 2004) */
+    SL_METHOD_EMBEDDING  /* k-means of the global point signature (Rustamov 2007; Liu, Zhang 2004) */
 } sl_cut_method;
 
 /* Which symmetries are used. */
@@ -37,6 +41,8 @@ typedef struct sl_segment_def {
     sl_cut_method method;     /* default spectral */
     int32_t vsa_regions;      /* proxies of a component's first cut, then 2 a cut; 0 = by error (default) */
     double vsa_error;         /* L2,1 error over area where proxies are added no more; default 0.05 */
+    int32_t clusters;         /* embedding: of a component's first cut, then 2 a cut; default 2 */
+    int32_t seed;             /* of the random numbers of `random` and `embedding`; default 1 */
     sl_symmetry_use symmetry; /* default auto */
     bool test_halves;         /* the paper's way (Sec. 4.3): no search for axes, but after each cut it is tested whether
                                  its halves are isomorphic; default false */
@@ -82,11 +88,13 @@ typedef enum sl_split_symmetry {
 /* One split of the recursion, in the order taken. */
 typedef struct sl_split {
     int32_t depth;
-    int32_t facets;     /* size of the chart split */
-    int32_t vector;     /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used.
-                         * PCA: axis the plane lies across, 0 = shortest; VSA: proxies. -1 = a spectral cut had to do */
-    double lambda;      /* eigenvalue; PCA: variance along the axis; VSA: L2,1 error over area */
-    int32_t candidates; /* vectors that passed the filter; PCA and VSA: 1, 0 = none */
+    int32_t facets; /* size of the chart split */
+    int32_t vector; /* eigenvector taken; -1 = none passed and the Fiedler vector's components were used.
+                     * PCA: axis the plane lies across, 0 = shortest; Fiedler: 1; others: clusters. -1 = a spectral cut
+                     * had to do */
+    double lambda;  /* eigenvalue; PCA: variance along the axis; VSA: L2,1 error over area; Iso-charts: the largest of
+                     * the scaling; embedding: mean squared distance from the centres; random: 0 */
+    int32_t candidates; /* vectors that passed the filter; other methods: 1, 0 = none */
     int32_t parts;      /* charts made */
     double length;      /* seam length, normalised mesh */
     bool smoothed;

@@ -318,13 +318,13 @@ expect 0 "$seamlab" segment $mesh
 contains out.txt '^0,'
 expect 0 "$seamlab" segment $mesh --json --preset paper
 contains out.txt '"invalid":0'
-for method in pca vsa 'vsa --vsa-regions 6' 'vsa --vsa-error 0.5'; do
+for method in pca fiedler 'random --seed 7' isocharts 'embedding --clusters 5' vsa 'vsa --vsa-regions 6' 'vsa --vsa-error 0.5'; do
     # shellcheck disable=SC2086
     expect 0 "$seamlab" segment $mesh --json --method $method
     contains out.txt '"invalid":0'
 done
 expect 2 "$seamlab" segment $mesh --method voronoi
-contains err.txt 'spectral|pca|vsa'
+contains err.txt 'spectral|pca|vsa|fiedler|random|isocharts|embedding'
 expect 2 "$seamlab" segment $mesh --method vsa --vsa-error -1
 expect 0 "$seamlab" unwrap $mesh -o vsa.obj --method vsa --vsa-regions 5
 expect 0 "$seamlab" spectrum $mesh --vectors 8 -o v.csv
