@@ -7,7 +7,9 @@
 
 /* A square window of UV space and its texels: texel (x, y) has its centre at ((x + 1/2) / W, (y + 1/2) / H) of the
  * window [0, 1]^2, row 0 at v = 0. Fill rule: top-left, 8 sub-pixel bits, float32 transform; bit for bit llvmpipe's
- * rule for power-of-two sizes (reports/design/raster.md). */
+ * rule for power-of-two sizes (reports/design/raster.md). Triangles that leave the window are counted as if it were
+ * larger; llvmpipe gives the same bits where its viewport is (to 16384 texels), and clips by a viewport that is the
+ * window: then texels within 1/256 of such a triangle's edge may differ. */
 typedef struct sl_coverage {
     int32_t width, height;
     uint16_t *count; /* width * height, row-major, saturating at 65535 */

@@ -117,6 +117,8 @@ void sl_edge_raster_free(sl_edge_raster *r)
     sl_free(r->fan);
     sl_free(r->position);
     sl_free(r->sign);
+    sl_free(r->odd);
+    sl_free(r->odd_place);
     sl_free(r->count8);
     sl_free(r->count16);
     sl_free(r->row_sums);
@@ -136,18 +138,6 @@ static void orient_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     (void)chunk;
     const sl_edge_raster *r = user;
     r->kernels.orient(begin, end, r->corner, r->position, r->sign);
-}
-
-/* The orientation of most triangles, and how many have another or none. */
-static int32_t count_folded(const sl_edge_raster *r, int8_t *most)
-{
-    int32_t positive = 0, negative = 0;
-    for (int32_t t = 0; t < r->nt; t++) {
-        positive += r->sign[t] > 0;
-        negative += r->sign[t] < 0;
-    }
-    *most = positive >= negative ? 1 : -1;
-    return r->nt - (positive >= negative ? positive : negative);
 }
 
 /* Appends halfedge h as often as its weight says, turned where that is negative. */
@@ -180,21 +170,15 @@ static sl_status append_edge(sl_edge_raster *r, int64_t h, int weight)
 static sl_status collect_edges(sl_edge_raster *r)
 {
     sl_status status = SL_OK;
-    int8_t most;
     r->edges = 0;
     for (int32_t b = 0; b < r->borders; b++) {
         SL_TRY(append_edge(r, r->border[b], r->sign[r->border[b] / 3]));
     }
-    if (count_folded(r, &most) == 0) {
-        return SL_OK;
-    }
-    for (int32_t t = 0; t < r->nt; t++) {
-        if (r->sign[t] == most) {
-            continue;
-        }
+    for (int64_t k = 0; k < r->odds; k++) {
+        const int32_t t = r->odd[k];
         for (int64_t h = 3 * (int64_t)t; h < 3 * (int64_t)t + 3; h++) {
             const int32_t other = r->across[h];
-            if (other >= 0 && r->sign[other] != r->sign[t] && (r->sign[other] == most || t < other)) {
+            if (other >= 0 && r->sign[other] != r->sign[t] && (r->sign[other] == r->most || t < other)) {
                 SL_TRY(append_edge(r, h, r->sign[t] - r->sign[other]));
             }
         }
@@ -253,6 +237,7 @@ sl_status sl_edge_raster_draw(sl_edge_raster *r, const double *uv, const sl_cont
         SL_TRY(draw_far(r, uv, context));
     } else {
         sl_parallel_for(context, r->nt, ORIENT_CHUNK, orient_chunk, r);
+        SL_TRY(sl_edge_signs_count(r));
         SL_TRY(collect_edges(r));
         memset(r->dirty, 1, (size_t)r->height);
         SL_TRY(sl_edge_raster_fill(r, context));
@@ -291,6 +276,7 @@ sl_status sl_edge_raster_move(sl_edge_raster *r, const double *uv, int32_t count
     if (!near) {
         return sl_edge_raster_draw(r, uv, context);
     }
+    SL_TRY(sl_edge_signs_prepare(r));
     r->drawn = false;
     for (int32_t k = 0; k < count; k++) {
         mark_fan(r, moved[k]);
@@ -302,9 +288,10 @@ sl_status sl_edge_raster_move(sl_edge_raster *r, const double *uv, int32_t count
     for (int32_t k = 0; k < count; k++) {
         mark_fan(r, moved[k]);
         for (int64_t f = r->fan_first[moved[k]]; f < r->fan_first[moved[k] + 1]; f++) {
-            r->kernels.orient(r->fan[f], (int64_t)r->fan[f] + 1, r->corner, r->position, r->sign);
+            SL_TRY(sl_edge_signs_update(r, r->fan[f]));
         }
     }
+    SL_TRY(sl_edge_signs_settle(r));
     SL_TRY(collect_edges(r));
     SL_TRY(sl_edge_raster_fill(r, context));
     r->drawn = true;
@@ -314,9 +301,8 @@ cleanup:
 
 sl_edge_raster_info sl_edge_raster_result(const sl_edge_raster *r)
 {
-    int8_t most;
     sl_edge_raster_info info = {.active_edges = (int32_t)(r->edges < INT32_MAX ? r->edges : INT32_MAX),
-                                .folded = r->far ? 0 : count_folded(r, &most),
+                                .folded = r->far ? 0 : (int32_t)r->odds,
                                 .vector = r->vector,
                                 .far = r->far};
     for (int32_t row = 0; row < r->height; row++) {

@@ -39,7 +39,7 @@ SL_NODISCARD sl_status sl_edge_raster_create(int32_t nv, int32_t nt, const int32
 SL_NODISCARD sl_status sl_edge_raster_draw(sl_edge_raster *raster, const double *uv, const sl_context *context);
 
 /* As sl_edge_raster_draw, when since the last drawing only the vertices moved[0 .. count - 1] have new UVs: only the
- * rows of their triangles are counted again. */
+ * rows of their triangles are counted again. O(triangles around them + borders + folds + texels of those rows). */
 SL_NODISCARD sl_status sl_edge_raster_move(sl_edge_raster *raster, const double *uv, int32_t count,
                                            const int32_t *moved, const sl_context *context);
 

@@ -21,10 +21,15 @@ struct sl_edge_raster {
     int32_t *across;    /* 3 nt: triangle on the other side of halfedge 3 t + k; -1 = border */
     int32_t *border;    /* borders: the halfedges with none */
     int32_t borders;
-    int64_t *fan_first; /* nv + 2: triangles of vertex v are fan[fan_first[v] .. fan_first[v + 1] - 1] */
-    int32_t *fan;       /* 3 nt */
-    int32_t *position;  /* 2 nv: lattice x, y */
-    int8_t *sign;       /* nt: orientation on the lattice */
+    int64_t *fan_first;         /* nv + 2: triangles of vertex v are fan[fan_first[v] .. fan_first[v + 1] - 1] */
+    int32_t *fan;               /* 3 nt */
+    int32_t *position;          /* 2 nv: lattice x, y */
+    int8_t *sign;               /* nt: orientation on the lattice */
+    int32_t positive, negative; /* triangles of each sign */
+    int8_t most;                /* the sign of most */
+    int32_t *odd;               /* triangles of another sign or none, in any order */
+    int64_t odds, odd_capacity;
+    int32_t *odd_place; /* nt: place of a triangle in that list, -1 = not in it; NULL until vertices are moved */
     uint8_t *count8;    /* width * height; one of the two */
     uint16_t *count16;
     int32_t *row_sums;   /* 2 height: texels hit once and more, twice and more */
@@ -50,6 +55,18 @@ SL_NODISCARD sl_status sl_edge_topology_pair(int32_t nv, int32_t nt, const int32
 /* Triangles of each vertex. Both arrays are owned by the caller, also after failure. */
 SL_NODISCARD sl_status sl_edge_topology_fans(int32_t nv, int32_t nt, const int32_t *tri, int64_t **first,
                                              int32_t **triangle);
+
+/* Counts the signs of all triangles and lists the odd ones. SL_OUT_OF_MEMORY. O(nt). */
+SL_NODISCARD sl_status sl_edge_signs_count(sl_edge_raster *raster);
+
+/* From now on sl_edge_signs_update can be used, until the next count fails. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_edge_signs_prepare(sl_edge_raster *raster);
+
+/* Computes the sign of one triangle anew. SL_OUT_OF_MEMORY. O(1). */
+SL_NODISCARD sl_status sl_edge_signs_update(sl_edge_raster *raster, int32_t triangle);
+
+/* After updates: lists anew where another sign has become that of most. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_edge_signs_settle(sl_edge_raster *raster);
 
 /* Rows of the window that the edge crosses: [*begin, *end), perhaps empty. */
 void sl_edge_rows(const sl_lattice_edge *edge, int32_t height, int32_t *begin, int32_t *end);

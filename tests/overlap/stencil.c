@@ -23,7 +23,8 @@ struct test_stencil {
 
 static const char vertex_source[] = "#version 300 es\n"
                                     "in vec2 uv;\n"
-                                    "void main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n";
+                                    "uniform float part;\n"
+                                    "void main() { gl_Position = vec4(part * (2.0 * uv - 1.0), 0.0, 1.0); }\n";
 static const char fragment_source[] = "#version 300 es\n"
                                       "precision mediump float;\n"
                                       "void main() { }\n";
@@ -116,7 +117,22 @@ test_stencil *test_stencil_create(int32_t width, int32_t height, int threads)
         test_stencil_free(s);
         return NULL;
     }
-    return s;
+    return test_stencil_widen(s, 0) ? s : (test_stencil_free(s), NULL);
+}
+
+bool test_stencil_widen(test_stencil *s, int doublings)
+{
+    const int32_t times = 1 << doublings;
+    GLint most[2] = {0, 0};
+    eglMakeCurrent(s->display, EGL_NO_SURFACE, EGL_NO_SURFACE, s->context);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, most);
+    if (s->width * times > most[0] || s->height * times > most[1] ||
+        (times > 1 && (s->width % 2 != 0 || s->height % 2 != 0))) {
+        return false;
+    }
+    glUniform1f(glGetUniformLocation(s->program, "part"), 1.0f / (float)times);
+    glViewport(-(times - 1) * (s->width / 2), -(times - 1) * (s->height / 2), s->width * times, s->height * times);
+    return glGetError() == GL_NO_ERROR;
 }
 
 bool test_stencil_draw(test_stencil *s, int32_t nv, const float *uv, int32_t nt, const int32_t *tri, uint8_t *count)

@@ -171,6 +171,39 @@ static void moving_a_few_vertices_counts_as_drawing_anew(void **state)
     }
 }
 
+/* Vertex by vertex the mesh is turned over: in between another orientation becomes that of most. What is told of it,
+ * and the edges that count, are those of a raster drawn at once. */
+static void turning_a_mesh_over_by_moves_tells_what_drawing_it_anew_does(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x307f);
+    for (int trial = 0; trial < 4 * test_multiplier(); trial++) {
+        int32_t nv, nt, moved[3], turns = 0;
+        int64_t folded = 0;
+        make_grid(&rng, 4 + test_index(&rng, 12), 0.25, &nv, &nt);
+        sl_edge_raster *raster = make_raster(nv, nt, 257, 190, 16, false);
+        assert_int_equal(sl_edge_raster_draw(raster, uv, NULL), SL_OK);
+        for (int32_t v = 0; v + 2 < nv; v += 3) {
+            for (int k = 0; k < 3; k++) {
+                moved[k] = v + k;
+                uv[2 * moved[k]] = 1.0 - uv[2 * moved[k]];
+            }
+            assert_int_equal(sl_edge_raster_move(raster, uv, 3, moved, NULL), SL_OK);
+            sl_edge_raster *fresh = make_raster(nv, nt, 257, 190, 16, false);
+            assert_int_equal(sl_edge_raster_draw(fresh, uv, NULL), SL_OK);
+            const sl_edge_raster_info a = sl_edge_raster_result(raster), b = sl_edge_raster_result(fresh);
+            assert_true(a.folded == b.folded && a.active_edges == b.active_edges && a.covered == b.covered &&
+                        a.overlapping == b.overlapping);
+            assert_memory_equal(sl_edge_raster_counts16(raster), sl_edge_raster_counts16(fresh), 2 * 257 * 190);
+            turns += a.folded < folded;
+            folded = a.folded;
+            sl_edge_raster_free(fresh);
+        }
+        assert_true(turns > 0);
+        sl_edge_raster_free(raster);
+    }
+}
+
 static void counts_beyond_65535_compare_and_saturate_rightly(void **state)
 {
     (void)state;
@@ -296,6 +329,7 @@ int main(void)
         cmocka_unit_test(counts_of_tangles_are_those_of_their_triangles),
         cmocka_unit_test(an_unfolded_mesh_is_drawn_from_its_border_alone),
         cmocka_unit_test(moving_a_few_vertices_counts_as_drawing_anew),
+        cmocka_unit_test(turning_a_mesh_over_by_moves_tells_what_drawing_it_anew_does),
         cmocka_unit_test(counts_beyond_65535_compare_and_saturate_rightly),
         cmocka_unit_test(counts_are_the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(wild_coordinates_are_refused_and_far_ones_counted),

@@ -63,8 +63,9 @@ static int64_t differing(const uint8_t *a, const uint8_t *b, int64_t n)
     return count;
 }
 
-/* The edge raster's counts and the triangle-by-triangle ones against the stencil buffer. */
-static void compare_at(const char *what, int32_t width, int32_t height)
+/* The edge raster's counts and the triangle-by-triangle ones against the stencil buffer, the driver clipping by a
+ * viewport that is larger than the window by so many doublings. */
+static void compare_widened(const char *what, int32_t width, int32_t height, int doublings)
 {
     if (!can_compare(width, height)) {
         print_message("no fused multiply-add here: %s is not compared at %d x %d\n", what, width, height);
@@ -84,6 +85,7 @@ static void compare_at(const char *what, int32_t width, int32_t height)
     for (int32_t i = 0; i < 2 * s.nv; i++) {
         s.narrow[i] = (float)s.uv[i];
     }
+    assert_true(test_stencil_widen(stencil, doublings));
     assert_true(test_stencil_draw(stencil, s.nv, s.narrow, s.nt, s.tri, expected));
     assert_int_equal(sl_edge_raster_create(s.nv, s.nt, s.tri, &def, &raster), SL_OK);
     assert_int_equal(sl_edge_raster_draw(raster, s.uv, NULL), SL_OK);
@@ -105,6 +107,11 @@ static void compare_at(const char *what, int32_t width, int32_t height)
                       (long long)by_triangles);
     }
     assert_true(covered > 0 && by_edges == 0 && by_triangles == 0);
+}
+
+static void compare_at(const char *what, int32_t width, int32_t height)
+{
+    compare_widened(what, width, height, 0);
 }
 
 static void compare(const char *what)
@@ -261,6 +268,133 @@ static void charts_of_an_atlas_are_counted_alike(void **state)
     }
 }
 
+/* Corners up to `reach` window sizes from the middle of the window, most triangles partly in it. */
+static void triangles_around_the_window(test_rng *rng, int32_t nt, double reach)
+{
+    random_triangles(rng, nt, 0.5);
+    for (int32_t t = 0; t < nt; t++) {
+        const int32_t out = test_index(rng, 4); /* so many corners are anywhere, the rest stay near the window */
+        for (int32_t k = 0; k < 3; k++) {
+            double *p = s.uv + 6 * t + 2 * k;
+            const double by = k < out ? reach : 0.6;
+            p[0] = 0.5 + test_uniform(rng, -by, by);
+            p[1] = 0.5 + test_uniform(rng, -by, by);
+        }
+    }
+}
+
+/* Triangles partly or wholly outside of the window, where the driver does not clip them: bit for bit. */
+static void triangles_beyond_the_window_are_counted_alike(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xbe0);
+    static const int32_t size[][2] = {{1024, 1024}, {512, 256}, {1000, 600}, {34, 1024}};
+    for (int k = 0; k < 4; k++) {
+        for (int doublings = 1; doublings <= 4; doublings++) {
+            triangles_around_the_window(&rng, 1500, 0.49 * (1 << doublings));
+            compare_widened("triangles beyond the window", size[k][0], size[k][1], doublings);
+        }
+    }
+}
+
+/* How far texel centres in which the counts differ are from the nearest edge of a triangle that leaves the window, at
+ * most [texels]; how many there are. */
+static int64_t differ_by(const uint8_t *expected, const uint8_t *got, int32_t width, int32_t height, double *farthest)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < (int64_t)width * height; i++) {
+        const double x = (double)(i % width) + 0.5, y = (double)(i / width) + 0.5;
+        double nearest = HUGE_VAL;
+        if (expected[i] == got[i]) {
+            continue;
+        }
+        count++;
+        for (int32_t t = 0; t < s.nt; t++) {
+            for (int k = 0; k < 3; k++) {
+                const double *p = s.uv + 2 * s.tri[3 * t + k], *q = s.uv + 2 * s.tri[3 * t + (k + 1) % 3];
+                const double px = p[0] * width, py = p[1] * height, dx = q[0] * width - px, dy = q[1] * height - py;
+                const double length = hypot(dx, dy);
+                const double off = length > 0.0 ? fabs(dx * (y - py) - dy * (x - px)) / length : hypot(x - px, y - py);
+                nearest = fmin(nearest, off);
+            }
+        }
+        *farthest = fmax(*farthest, nearest);
+    }
+    return count;
+}
+
+/* Where the driver clips by the window it rounds the points of the clipped edges, and we do not: the counts differ in
+ * few texels, all of them at an edge. (Triangles that do not leave the window are not clipped.) */
+static void clipping_by_the_window_moves_edges_by_less_than_a_sub_pixel(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xc11);
+    const int32_t size = 512;
+    static const double reach[] = {0.6, 2.0, 16.0, 1000.0, 16000.0};
+    test_stencil *stencil = test_stencil_create(size, size, 0);
+    if (stencil == NULL) {
+        skip();
+    }
+    uint8_t *expected = sl_alloc(size * size, 1);
+    assert_non_null(expected);
+    const sl_edge_raster_def def = {.width = size, .height = size, .depth = 8};
+    for (int k = 0; k < 5; k++) {
+        sl_edge_raster *raster = NULL;
+        double farthest = 0.0;
+        triangles_around_the_window(&rng, 400, reach[k]);
+        for (int32_t i = 0; i < 2 * s.nv; i++) {
+            s.narrow[i] = (float)s.uv[i];
+            s.uv[i] = s.narrow[i];
+        }
+        assert_true(test_stencil_draw(stencil, s.nv, s.narrow, s.nt, s.tri, expected));
+        assert_int_equal(sl_edge_raster_create(s.nv, s.nt, s.tri, &def, &raster), SL_OK);
+        assert_int_equal(sl_edge_raster_draw(raster, s.uv, NULL), SL_OK);
+        const int64_t count = differ_by(expected, sl_edge_raster_counts8(raster), size, size, &farthest);
+        if (count > size * size / 1000 || farthest >= 1.0 / 256.0) {
+            print_message("corners up to %g windows away: %lld texels differ, up to %.4f texels from an edge\n",
+                          reach[k], (long long)count, farthest);
+        }
+        assert_true(count <= size * size / 1000 && farthest < 1.0 / 256.0);
+        sl_edge_raster_free(raster);
+    }
+    sl_free(expected);
+    test_stencil_free(stencil);
+}
+
+/* What the window does not show at all counts nowhere, however far it is. */
+static void triangles_outside_of_the_window_count_nothing(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x07);
+    const int32_t size = 256;
+    test_stencil *stencil = test_stencil_create(size, size, 0);
+    if (stencil == NULL) {
+        skip();
+    }
+    static uint8_t expected[256 * 256];
+    const sl_edge_raster_def def = {.width = size, .height = size, .depth = 8};
+    sl_edge_raster *raster = NULL;
+    random_triangles(&rng, 2000, 0.3);
+    for (int32_t t = 0; t < s.nt; t++) {
+        const int32_t axis = test_index(&rng, 2);
+        const double far = exp(test_uniform(&rng, 0.1, 9.6)), side = test_index(&rng, 2) == 0 ? 1.0 : -1.0;
+        for (int k = 0; k < 3; k++) {
+            s.uv[6 * t + 2 * k + axis] += side * far;
+            s.uv[6 * t + 2 * k + 1 - axis] *= test_uniform(&rng, -far, far);
+        }
+    }
+    for (int32_t i = 0; i < 2 * s.nv; i++) {
+        s.narrow[i] = (float)s.uv[i];
+    }
+    assert_true(test_stencil_draw(stencil, s.nv, s.narrow, s.nt, s.tri, expected));
+    assert_int_equal(sl_edge_raster_create(s.nv, s.nt, s.tri, &def, &raster), SL_OK);
+    assert_int_equal(sl_edge_raster_draw(raster, s.uv, NULL), SL_OK);
+    assert_int_equal(sl_edge_raster_result(raster).covered, 0);
+    assert_int_equal(differing(expected, sl_edge_raster_counts8(raster), size * size), 0);
+    sl_edge_raster_free(raster);
+    test_stencil_free(stencil);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +405,9 @@ int main(void)
         cmocka_unit_test(disks_are_counted_alike_and_once),
         cmocka_unit_test(saturated_counts_are_alike),
         cmocka_unit_test(charts_of_an_atlas_are_counted_alike),
+        cmocka_unit_test(triangles_beyond_the_window_are_counted_alike),
+        cmocka_unit_test(clipping_by_the_window_moves_edges_by_less_than_a_sub_pixel),
+        cmocka_unit_test(triangles_outside_of_the_window_count_nothing),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
