@@ -39,9 +39,12 @@ static void each_failed_allocation_is_told_and_leaves_nothing_behind(void **stat
     sl_mesh *mesh = test_spiky_mesh(&rng, 6, 4, 1.2, TEST_MIXED);
     sl_triangulation *t = test_triangulate(mesh);
     sl_piece *piece = test_whole_piece(mesh, t);
-    for (int which = 0; which < 4; which++) {
+    static const sl_cut_method methods[] = {SL_METHOD_PCA,       SL_METHOD_VSA,      SL_METHOD_VSA,
+                                            SL_METHOD_VSA,       SL_METHOD_FIEDLER,  SL_METHOD_RANDOM,
+                                            SL_METHOD_ISOCHARTS, SL_METHOD_EMBEDDING};
+    for (size_t which = 0; which < SL_COUNTOF(methods); which++) {
         sl_segment_def def = sl_segment_default();
-        def.method = which == 0 ? SL_METHOD_PCA : SL_METHOD_VSA;
+        def.method = methods[which];
         def.vsa_regions = which == 1 ? 2 : which == 2 ? 12 : 0;
         def.vsa_error = 0.2;
         sl_status status = SL_OUT_OF_MEMORY;

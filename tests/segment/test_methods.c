@@ -15,13 +15,19 @@ static sl_mesh *shape(test_rng *rng, int kind)
     }
 }
 
-/* PCA, VSA by number, VSA by error. */
+/* PCA, VSA by number, VSA by error, the Fiedler vector, at random, Iso-charts, embeddings in two and in five. */
+enum { METHODS = 8 };
+
 static sl_segment_def method(int which, sl_segment_def def)
 {
+    static const sl_cut_method methods[METHODS] = {SL_METHOD_PCA,       SL_METHOD_VSA,      SL_METHOD_VSA,
+                                                   SL_METHOD_FIEDLER,   SL_METHOD_RANDOM,   SL_METHOD_ISOCHARTS,
+                                                   SL_METHOD_EMBEDDING, SL_METHOD_EMBEDDING};
     def.symmetry = SL_SYMMETRY_USE_OFF;
-    def.method = which == 0 ? SL_METHOD_PCA : SL_METHOD_VSA;
+    def.method = methods[which];
     def.vsa_regions = which == 1 ? 5 : 0;
     def.vsa_error = 0.3;
+    def.clusters = which == 7 ? 5 : 2;
     return def;
 }
 
@@ -41,21 +47,26 @@ static void every_method_ends_in_valid_charts(void **state)
     (void)state;
     test_rng rng = test_rng_seed(0x3e70);
     int32_t deeper = 0;
-    for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
-        sl_mesh *mesh = shape(&rng, trial / 3);
+    for (int trial = 0; trial < 4 * METHODS * test_multiplier(); trial++) {
+        const int which = trial % METHODS;
+        sl_mesh *mesh = shape(&rng, trial / METHODS);
         sl_triangulation *t = test_triangulate(mesh);
-        sl_segment_def def = method(trial % 3, trial % 2 == 0 ? sl_segment_default() : sl_segment_paper());
-        def.flatten.max_stretch = trial % 3 == 1 ? 1.02 : def.flatten.max_stretch;
+        sl_segment_def def = method(which, trial / METHODS % 2 == 0 ? sl_segment_default() : sl_segment_paper());
+        def.flatten.max_stretch = which == 1 ? 1.02 : def.flatten.max_stretch;
         sl_segmentation *s = segment(mesh, t, &def, 2);
         assert_int_equal(test_check_segmentation(mesh, t, s, def.flatten.max_stretch), 0);
         assert_true(s->nsplit > 0 && s->split[0].vector >= 0 && s->split[0].candidates == 1);
         assert_true(def.method != SL_METHOD_PCA || s->split[0].vector <= 2);
+        assert_true(def.method != SL_METHOD_FIEDLER || s->split[0].vector == 1);
+        assert_true(def.method != SL_METHOD_EMBEDDING || s->split[0].vector == def.clusters);
         for (int32_t k = 0; k < s->nsplit; k++) { /* as many proxies as were asked for once, then two */
             const bool first = s->split[k].depth == 0;
-            deeper += trial % 3 == 1 && !first;
-            assert_true(trial % 3 != 1 || s->split[k].parts == (first ? 5 : 2));
-            assert_true(trial % 3 != 1 || s->split[k].vector == s->split[k].parts);
-            assert_true(trial % 3 != 2 || first || s->split[k].parts == 2);
+            deeper += which == 1 && !first;
+            assert_true(which != 1 || s->split[k].parts == (first ? 5 : 2));
+            assert_true(which != 1 || s->split[k].vector == s->split[k].parts);
+            assert_true(which != 2 || first || s->split[k].parts == 2);
+            assert_true(def.method != SL_METHOD_RANDOM || s->split[k].parts == 2);
+            assert_true(which != 7 || first || s->split[k].vector == 2);
         }
         sl_segmentation_free(s);
         sl_triangulation_free(t);
@@ -67,7 +78,7 @@ static void every_method_ends_in_valid_charts(void **state)
 static void any_number_of_threads_gives_the_same_bytes(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < METHODS; which++) {
         sl_mesh *mesh[3];
         sl_segmentation *s[3];
         const int32_t threads[3] = {1, 2, 5};
@@ -97,7 +108,7 @@ static void pairs_of_triangles_are_never_cut_apart(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0x9a13);
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < METHODS; which++) {
         sl_mesh *mesh = test_spiky_mesh(&rng, 6, 3, 1.0, TEST_TRIANGLES);
         sl_triangulation *t = test_triangulate(mesh);
         sl_piece *piece = test_whole_piece(mesh, t);
