@@ -9,9 +9,12 @@
 
 static const double STEP_SHARE = 0.9; /* of the step to the first flip */
 static const double ARMIJO = 1e-4;
-static const double NEGLIGIBLE = 1e-2; /* of the decrease asked for */
-static const int MAX_HALVINGS = 40;    /* of a step: 1e-12 of the first trial */
-static const int MAX_DOUBLINGS = 10;   /* of a full step */
+static const double NEGLIGIBLE = 1e-2;    /* of the decrease asked for */
+static const double LARGE_SCALE = 0x1p40; /* what is left of the energy at this scale is its quadratic part */
+static const double LONGER =
+    1.15; /* steps are doubled where the energy along them looks least beyond so many lengths */
+static const int MAX_HALVINGS = 40;  /* of a step: 1e-12 of the first trial */
+static const int MAX_DOUBLINGS = 10; /* of a full step */
 
 /* Far from the minimum (4 is isometric) a plain Newton step is stopped short by a few triangles that would flip; the
  * softened one is not. The two take turns by what the last step gained. */
@@ -19,18 +22,21 @@ static const double FAR_ENERGY = 100.0;
 static const double SOFT_CAP = 1.0; /* bound on |ln s|: singular values within 0.37 and 2.7 */
 static const double SOFT_GAIN = 0.03, PLAIN_GAIN = 0.05;
 
+enum { VERTEX_ARRAYS = 6 };
+
 struct sl_stretch {
     const sl_patch *patch;
     sl_stretch_def def;
     sl_stretch_info info;
-    sl_stretch_rest rest;
-    sl_stretch_system system;
-    double *uv, *trial, *gradient, *force, *direction; /* 2 nv each */
+    sl_stretch_store own, *store; /* the workspace's, or its own */
+    sl_stretch_freedom freedom;
+    double *uv, *trial, *spare, *gradient, *force, *direction; /* 2 nv each, in the store's block */
     int32_t nb;
     int32_t *border; /* nb vertex pairs; NULL unless simple_border */
     double energy;
     bool softened;    /* the next step */
     double soft_gain; /* of the last softened step: share of the energy */
+    bool ready;       /* the store's system is this patch's */
     bool done;
 };
 
@@ -91,18 +97,15 @@ static sl_status border_is_simple(const sl_stretch *s, const double *uv, bool *s
     return status;
 }
 
-/* The power of two nearest to the scale of least energy: multiplying by it is exact, so no triangle can flip. */
+/* The power of two nearest to the scale of least energy: multiplying by it is exact, so no triangle can flip. The
+ * energy of c uv is c^2 quadratic + c^-2 inverse. */
 static double best_scale(const sl_stretch *s, double energy)
 {
-    const sl_stretch_sums at = {energy, 0.0};
-    double quadratic = 0.0;
-    for (int32_t t = 0; t < s->rest.nt; t++) {
-        double J[4];
-        sl_stretch_jacobian(&s->rest, s->patch->tri, s->uv, t, J);
-        const double I = J[0] * J[0] + J[1] * J[1] + J[2] * J[2] + J[3] * J[3], d = J[0] * J[3] - J[1] * J[2];
-        quadratic += s->rest.weight[t] * ((1.0 - s->def.w) * I + 2.0 * s->def.w * d);
+    for (int64_t i = 0; i < 2 * (int64_t)s->patch->nv; i++) {
+        s->trial[i] = LARGE_SCALE * s->uv[i];
     }
-    const double inverse = at.energy - quadratic; /* E(c) = c^2 quadratic + c^-2 inverse */
+    const double large = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->trial).energy;
+    const double quadratic = large / (LARGE_SCALE * LARGE_SCALE), inverse = energy - quadratic;
     if (!(inverse > 0.0) || !(quadratic > 0.0) || !isfinite(inverse / quadratic)) {
         return 1.0;
     }
@@ -116,7 +119,7 @@ static sl_status start(sl_stretch *s, const double *uv)
         return SL_BAD_INPUT;
     }
     memcpy(s->uv, uv, (size_t)count * sizeof *uv);
-    sl_stretch_sums sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->uv);
+    sl_stretch_sums sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->uv);
     if (!isfinite(sums.energy)) {
         return SL_BAD_INPUT;
     }
@@ -128,18 +131,40 @@ static sl_status start(sl_stretch *s, const double *uv)
     s->info.energy_before = sums.energy;
     s->done = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
     s->info.converged = s->done;
-    const double scale = s->done ? 1.0 : best_scale(s, sums.energy);
+    const bool scales = !s->done && !sl_stretch_holds_places(s->patch, &s->def);
+    const double scale = scales ? best_scale(s, sums.energy) : 1.0;
     if (scale != 1.0) {
         for (int64_t i = 0; i < count; i++) {
             s->uv[i] *= scale;
         }
-        sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->uv);
+        sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->uv);
     }
     s->energy = sums.energy;
     s->softened = sums.energy > FAR_ENERGY;
     s->soft_gain = 1.0;
     s->info.energy_after = sums.energy;
     s->info.l2 = sums.l2;
+    return SL_OK;
+}
+
+/* The arrays of vertices, in the store's block. */
+static sl_status lay_out(sl_stretch *s)
+{
+    const int64_t count = 2 * (int64_t)s->patch->nv;
+    sl_stretch_store *store = s->store;
+    if (VERTEX_ARRAYS * count > store->capacity) {
+        sl_free(store->block);
+        store->capacity = 0;
+        store->block = sl_alloc(count, VERTEX_ARRAYS * sizeof *store->block);
+        if (store->block == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        store->capacity = VERTEX_ARRAYS * count;
+    }
+    double **const array[VERTEX_ARRAYS] = {&s->uv, &s->trial, &s->spare, &s->gradient, &s->force, &s->direction};
+    for (int k = 0; k < VERTEX_ARRAYS; k++) {
+        *array[k] = store->block + k * count;
+    }
     return SL_OK;
 }
 
@@ -153,21 +178,14 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     }
     s->patch = patch;
     s->def = *def;
-    const int64_t count = 2 * (int64_t)patch->nv;
-    s->uv = sl_alloc(count, sizeof *s->uv);
-    s->trial = sl_alloc(count, sizeof *s->trial);
-    s->gradient = sl_alloc(count, sizeof *s->gradient);
-    s->force = sl_alloc(count, sizeof *s->force);
-    s->direction = sl_alloc(count, sizeof *s->direction);
-    if (s->uv == NULL || s->trial == NULL || s->gradient == NULL || s->force == NULL || s->direction == NULL) {
-        status = SL_OUT_OF_MEMORY;
-        goto cleanup;
-    }
+    s->store = sl_stretch_store_borrow(def->workspace, &s->own);
+    SL_TRY(lay_out(s));
     if (def->simple_border) {
         SL_TRY(sl_stretch_list_border(patch, &s->nb, &s->border));
     }
-    SL_TRY(sl_stretch_rest_init(patch, &s->rest));
+    SL_TRY(sl_stretch_rest_init(patch, &s->store->rest));
     SL_TRY(start(s, uv));
+    SL_TRY(sl_stretch_freedom_init(patch, def, uv, &s->freedom));
     *out = s;
     s = NULL;
 cleanup:
@@ -182,18 +200,41 @@ static sl_status try_length(sl_stretch *s, double length, double slope, bool *ac
     for (int64_t i = 0; i < 2 * (int64_t)s->patch->nv; i++) {
         s->trial[i] = s->uv[i] + length * s->direction[i];
     }
-    *sums = sl_stretch_measure(&s->rest, s->patch->tri, s->def.w, s->trial);
-    if (!(sums->energy <= s->energy + ARMIJO * length * slope) || !all_positive(s->patch, s->trial)) {
+    *sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->trial);
+    if (!(sums->energy <= s->energy + ARMIJO * length * slope) || (!sums->sure && !all_positive(s->patch, s->trial))) {
         return SL_OK;
     }
     return border_is_simple(s, s->trial, accepted);
 }
 
-static void swap_in_trial(sl_stretch *s)
+static void swap(double **a, double **b)
 {
-    double *const old = s->uv;
-    s->uv = s->trial;
-    s->trial = old;
+    double *const old = *a;
+    *a = *b;
+    *b = old;
+}
+
+/* After an accepted full step: longer ones where the parabola through what is known has its least value well beyond it.
+ * The best map so far is kept in spare meanwhile, and ends in trial. */
+static sl_status lengthen(sl_stretch *s, double slope, double bound, sl_stretch_sums *sums)
+{
+    const double bend = sums->energy - s->energy - slope; /* E(t) = E + slope t + bend t^2 */
+    sl_status status = SL_OK;
+    double length = 1.0;
+    bool better = -slope > LONGER * 2.0 * bend;
+    for (int i = 0; i < MAX_DOUBLINGS && better && 2.0 * length <= bound && status == SL_OK; i++) {
+        sl_stretch_sums longer;
+        swap(&s->trial, &s->spare);
+        status = try_length(s, 2.0 * length, slope, &better, &longer);
+        better = status == SL_OK && better && longer.energy < sums->energy;
+        if (better) {
+            length *= 2.0;
+            *sums = longer;
+        } else {
+            swap(&s->trial, &s->spare);
+        }
+    }
+    return status;
 }
 
 /* Backtracks from 0.9 of the flip-free step; where a full step did well, tries longer ones (a projected Hessian is too
@@ -201,7 +242,7 @@ static void swap_in_trial(sl_stretch *s)
  */
 static sl_status line_search(sl_stretch *s, double slope, bool *moved, sl_stretch_sums *sums)
 {
-    const double bound = STEP_SHARE * sl_stretch_step_bound(s->patch, s->uv, s->direction);
+    const double bound = STEP_SHARE * sl_stretch_step_bound(&s->store->rest, s->patch->tri, s->uv, s->direction);
     double length = fmin(1.0, bound);
     *moved = false;
     for (int i = 0; i < MAX_HALVINGS && !*moved; i++) {
@@ -211,22 +252,7 @@ static sl_status line_search(sl_stretch *s, double slope, bool *moved, sl_stretc
         }
         length *= *moved ? 1.0 : 0.5;
     }
-    bool better = *moved && length == 1.0;
-    for (int i = 0; i < MAX_DOUBLINGS && better && 2.0 * length <= bound; i++) {
-        sl_stretch_sums longer;
-        sl_status status = try_length(s, 2.0 * length, slope, &better, &longer);
-        better = better && longer.energy < sums->energy;
-        if (better) {
-            length *= 2.0;
-            *sums = longer;
-        } else if (status == SL_OK) {
-            status = try_length(s, length, slope, moved, sums); /* back to the best one */
-        }
-        if (status != SL_OK) {
-            return status;
-        }
-    }
-    return SL_OK;
+    return *moved && length == 1.0 ? lengthen(s, slope, bound, sums) : SL_OK;
 }
 
 static double dot(int64_t count, const double *a, const double *b)
@@ -243,9 +269,10 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
 {
     const int64_t count = 2 * (int64_t)s->patch->nv;
     *moved = false;
-    sl_stretch_assemble(s->patch, &s->rest, s->def.w, softened ? SOFT_CAP : INFINITY, s->uv, &s->system, s->gradient,
-                        s->force);
-    const sl_status status = sl_stretch_direction(&s->system, s->force, s->direction);
+    sl_stretch_system *system = &s->store->system;
+    sl_stretch_assemble(s->patch, &s->store->rest, &s->freedom, s->def.w, softened ? SOFT_CAP : INFINITY, s->uv, system,
+                        s->gradient, s->force);
+    const sl_status status = sl_stretch_direction(&s->freedom, system, s->force, s->direction);
     if (status != SL_OK) {
         return status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
     }
@@ -276,7 +303,7 @@ static bool is_hopeless(const sl_stretch *s, double gain)
 static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
 {
     const double gain = (s->energy - sums.energy) / s->energy;
-    swap_in_trial(s);
+    swap(&s->uv, &s->trial);
     s->energy = sums.energy;
     s->softened = sums.energy > FAR_ENERGY && (softened ? gain >= SOFT_GAIN : gain < PLAIN_GAIN);
     s->info.energy_after = sums.energy;
@@ -316,8 +343,9 @@ sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
     for (int32_t i = 0; i < n && !s->done && s->info.iterations < s->def.max_iterations; i++) {
         sl_status status =
             sl_report_progress(context, "minimising stretch", (double)s->info.iterations / s->def.max_iterations);
-        if (status == SL_OK && s->system.H == NULL) {
-            status = sl_stretch_system_init(s->patch, &s->system);
+        if (status == SL_OK && !s->ready) {
+            status = sl_stretch_store_system(s->store, s->patch, &s->freedom);
+            s->ready = status == SL_OK;
         }
         if (status == SL_OK) {
             status = newton_step(s);
@@ -344,13 +372,8 @@ void sl_stretch_free(sl_stretch *s)
     if (s == NULL) {
         return;
     }
-    sl_stretch_rest_clear(&s->rest);
-    sl_stretch_system_clear(&s->system);
-    sl_free(s->uv);
-    sl_free(s->trial);
-    sl_free(s->gradient);
-    sl_free(s->force);
-    sl_free(s->direction);
+    sl_stretch_freedom_clear(&s->freedom);
+    sl_stretch_store_return(s->def.workspace, s->store);
     sl_free(s->border);
     sl_free(s);
 }

@@ -1,4 +1,5 @@
-/* Flip-free minimisation of a stretch energy, starting from any flip-free map.
+/* Flip-free minimisation of a stretch energy, starting from any flip-free map; with vertices and lines held where
+ * asked.
  *
  *     E = sum over triangles A_t ((1 - w)(s1^2 + s2^2) + 2 w s1 s2 + s1^-2 + s2^-2)
  *
@@ -10,6 +11,19 @@
 #include "base/context.h"
 #include "mesh/patch.h"
 
+/* Vertices kept on a straight line. Lines may cross and end on each other, and share vertices with the fixed ones: a
+ * line with a fixed vertex is fixed. A vertex on three or more lines stays where it is, and so do they. */
+typedef struct sl_stretch_line {
+    int32_t count;         /* at least 2 */
+    const int32_t *vertex; /* straight in the start to 1e-6 of its length; borrowed */
+    bool fixed; /* false: the line moves along its normal as the energy wants; its direction never changes, so that the
+                   angles between lines are kept, too */
+} sl_stretch_line;
+
+/* Buffers and a symbolic analysis to be used again by one solver after another; not by two at a time, nor by two
+ * threads. Opaque. */
+typedef struct sl_stretch_workspace sl_stretch_workspace;
+
 typedef struct sl_stretch_def {
     double w;                 /* energy weight, at most 1; below 0 it buys angles for stretch; default 0 */
     int32_t max_iterations;   /* projected Newton steps; default 60 */
@@ -20,6 +34,11 @@ typedef struct sl_stretch_def {
     double hopeless_gain; /* give up once target_l2 is out of reach even if L2 falls by this many times the share of the
                            * energy that the last plain step gained; 0 = never; default 0 */
     bool simple_border;   /* refuse steps that make the border cross itself; needs a simple start; default false */
+    const uint8_t *fixed; /* nv: 1 = the vertex stays where it starts; borrowed; default NULL = none. With fixed
+                           * vertices or lines the map is not scaled first */
+    int32_t line_count;   /* default 0 */
+    const sl_stretch_line *line;     /* line_count; borrowed until create returns */
+    sl_stretch_workspace *workspace; /* borrowed while the solver lives; default NULL = everything anew */
 } sl_stretch_def;
 
 sl_stretch_def sl_stretch_default(void);
@@ -41,6 +60,14 @@ typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor;
 SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def,
                                          sl_stretch **out);
 
+/* An empty workspace. A solver that is freed leaves its buffers and the analysis of its system here; the next one that
+ * names it allocates only what is larger, and analyses nothing when its triangles, their points in space and the
+ * vertices held are the same (compared, not trusted). The results do not depend on it. On 500 triangles the analysis
+ * costs as much as one step and a half.
+ * SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_stretch_workspace_create(sl_stretch_workspace **out);
+void sl_stretch_workspace_free(sl_stretch_workspace *workspace); /* after its solvers; NULL is a no-op */
+
 /* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of
  * the first flip (Smith and Schaefer 2015), Armijo; longer than a full step where that pays. While the map is far from
  * its minimum (energy above 100 a unit of area) the direction is taken from rest shapes softened towards their images
@@ -50,7 +77,21 @@ SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_c
 
 const sl_stretch_info *sl_stretch_info_of(const sl_stretch *solver);
 const double *sl_stretch_uv(const sl_stretch *solver); /* nv x 2, borrowed */
-void sl_stretch_free(sl_stretch *solver);              /* NULL is a no-op */
+
+/* What the measures of stretch add up from: over the triangles that are not degenerate in 3D, in the input's units,
+ *
+ *     area = sum A_t, uv = sum a_t, inverse = sum A_t (s1^-2 + s2^-2)/2, angle = sum A_t s1/s2
+ *
+ * with A_t, a_t the areas in space and in the plane and s1 >= s2 the singular values of the map from space to the
+ * plane. L2 = sqrt(inverse uv) / area at the best scale of what was summed; sqrt(inverse uv) - area is its share of a
+ * sum over charts. Sums of parts add. inverse and angle are infinite where a triangle is not positive. */
+typedef struct sl_stretch_terms {
+    double area, uv, inverse, angle;
+} sl_stretch_terms;
+
+/* The sum over all triangles under uv (nv x 2), of triangle t in term[t] (nullable, nt). Allocates nothing. O(nt). */
+sl_stretch_terms sl_stretch_terms_of(const sl_patch *patch, const double *uv, sl_stretch_terms *term);
+void sl_stretch_free(sl_stretch *solver); /* NULL is a no-op */
 
 /* create, step to the end; uv in and out. info may be NULL. */
 SL_NODISCARD sl_status sl_stretch_minimise(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context,

@@ -1,3 +1,4 @@
+/* The matrix of the Newton system, where each triangle's entries go in it, and its solution. */
 #include "param/stretch_internal.h"
 
 #include "base/memory.h"
@@ -9,159 +10,283 @@
  * at a minimum) from its null space; the others are for lost digits. */
 static const double SHIFTS[] = {1e-10, 1e-7, 1e-4, 1e-2};
 
-/* Lists the neighbours above each vertex: edges (lo, hi) of the patch, bucketed by lo, each list ascending.
- * first: nv + 1; hi: 3 nt at most. */
-static void neighbours_above(const sl_patch *patch, int64_t *first, int32_t *hi, int64_t *next)
+enum { CORNER_UNKNOWNS = 6 };
+
+int sl_stretch_entry(int i, int j)
 {
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t h = 0; h < 3 * patch->nt; h++) {
-            const int32_t v = patch->tri[h], w = patch->tri[sl_corner_next(h)];
-            if (patch->twin[h] > h) {
-                continue; /* an interior edge is listed by its higher halfedge */
-            }
-            const int32_t lo = v < w ? v : w;
-            if (pass == 0) {
-                first[lo + 1]++;
-            } else {
-                hi[next[lo]++] = v < w ? w : v;
-            }
-        }
-        for (int32_t v = 0; v < patch->nv && pass == 0; v++) {
-            first[v + 1] += first[v];
-            next[v] = first[v];
-        }
-    }
-    for (int32_t v = 0; v < patch->nv; v++) {
-        int64_t end = first[v];
-        for (int64_t i = first[v]; i < next[v]; i++) { /* insertion sort: lists are short; equal entries merge */
-            const int32_t x = hi[i];
-            int64_t k = end;
-            while (k > first[v] && hi[k - 1] > x) {
-                k--;
-            }
-            if (k > first[v] && hi[k - 1] == x) {
-                continue;
-            }
-            memmove(&hi[k + 1], &hi[k], (size_t)(end - k) * sizeof *hi);
-            hi[k] = x;
-            end++;
-        }
-        next[v] = end;
-    }
+    static const int place[CORNER_UNKNOWNS][CORNER_UNKNOWNS] = {
+        {0, 1, 9, 10, 17, 19},  {1, 2, 11, 12, 18, 20}, {9, 11, 3, 4, 13, 14},
+        {10, 12, 4, 5, 15, 16}, {17, 18, 13, 15, 6, 7}, {19, 20, 14, 16, 7, 8},
+    };
+    return place[i][j];
 }
 
-/* The pattern of H: column 2 v has rows 2 v, 2 v + 1 and both rows of every neighbour above, column 2 v + 1 the same
- * without row 2 v. */
-static void fill_pattern(const int64_t *first, const int64_t *next, const int32_t *hi, sl_csc *H)
+/* The graph of the blocks of unknowns that triangles couple: those above block i are hi[first[i] .. end[i] - 1],
+ * ascending. */
+typedef struct block_graph {
+    int32_t blocks, size;
+    int64_t *first, *end;
+    int32_t *hi;
+} block_graph;
+
+static int32_t unknown_of(const sl_stretch_freedom *freedom, int32_t v, int32_t side)
 {
-    int64_t p = 0;
-    for (int32_t v = 0; v < H->ncols / 2; v++) {
-        for (int32_t side = 0; side < 2; side++) {
-            for (int32_t r = side; r < 2; r++) {
-                H->row[p++] = 2 * v + r;
+    return freedom->unknown != NULL ? freedom->unknown[2 * (int64_t)v + side] : 2 * v + side;
+}
+
+/* The blocks of triangle t, -1 = none: three of two unknowns, or six of one. */
+static int32_t blocks_of(const sl_patch *patch, const sl_stretch_freedom *freedom, int32_t t,
+                         int32_t block[CORNER_UNKNOWNS])
+{
+    const int32_t each = 2 / freedom->block;
+    for (int32_t i = 0; i < 3 * each; i++) {
+        const int32_t u = unknown_of(freedom, patch->tri[3 * t + i / each], i % each);
+        block[i] = u < 0 ? -1 : u / freedom->block;
+    }
+    return 3 * each;
+}
+
+/* Counts (hi == NULL) or lists the pairs of blocks in triangles, by the lower one. */
+static void list_pairs(const sl_patch *patch, const sl_stretch_freedom *freedom, int64_t *next, int32_t *hi)
+{
+    for (int32_t t = 0; t < patch->nt; t++) {
+        int32_t block[CORNER_UNKNOWNS];
+        const int32_t count = blocks_of(patch, freedom, t, block);
+        for (int32_t i = 1; i < count; i++) {
+            for (int32_t j = 0; j < i; j++) {
+                const int32_t a = block[i], b = block[j], lo = a < b ? a : b;
+                if (lo < 0 || a == b) {
+                    continue;
+                }
+                if (hi != NULL) {
+                    hi[next[lo]] = a < b ? b : a;
+                }
+                next[lo]++;
             }
-            for (int64_t i = first[v]; i < next[v]; i++) {
-                H->row[p++] = 2 * hi[i];
-                H->row[p++] = 2 * hi[i] + 1;
-            }
-            H->colptr[2 * v + side + 1] = p;
         }
     }
 }
 
-/* Where the block of each triangle's edges begins in its column 2 lo. */
-static void find_slots(const sl_patch *patch, const int64_t *first, const int64_t *next, const int32_t *hi,
-                       const sl_csc *H, int64_t *slot)
+/* Sorts a short list in place and drops repetitions; returns its end. */
+static int64_t sort_unique(int32_t *list, int64_t begin, int64_t end)
 {
-    for (int32_t h = 0; h < 3 * patch->nt; h++) {
-        const int32_t v = patch->tri[h], w = patch->tri[sl_corner_next(h)];
-        const int32_t lo = v < w ? v : w, up = v < w ? w : v;
-        int64_t i = first[lo];
-        while (i < next[lo] && hi[i] != up) {
-            i++;
+    int64_t kept = begin;
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t x = list[i];
+        int64_t k = kept;
+        while (k > begin && list[k - 1] > x) {
+            k--;
         }
-        SL_ASSERT(i < next[lo]);
-        slot[h] = H->colptr[2 * lo] + 2 + 2 * (i - first[lo]);
+        if (k > begin && list[k - 1] == x) {
+            continue;
+        }
+        memmove(&list[k + 1], &list[k], (size_t)(kept - k) * sizeof *list);
+        list[k] = x;
+        kept++;
     }
+    return kept;
 }
 
-/* The order of elimination, found on the vertices: both unknowns of one follow each other. perm: 2 nv. */
-static sl_status order_unknowns(const sl_patch *patch, const int64_t *first, const int64_t *next, const int32_t *hi,
-                                int32_t *perm)
+static sl_status block_graph_init(const sl_patch *patch, const sl_stretch_freedom *freedom, block_graph *g)
 {
-    sl_csc *graph = NULL;
-    int64_t nnz = patch->nv, p = 0;
-    for (int32_t v = 0; v < patch->nv; v++) {
-        nnz += next[v] - first[v];
+    g->size = freedom->block;
+    g->blocks = freedom->unknowns / freedom->block;
+    g->first = sl_calloc((int64_t)g->blocks + 1, sizeof *g->first);
+    g->end = sl_calloc((int64_t)g->blocks + 1, sizeof *g->end);
+    if (g->first == NULL || g->end == NULL) {
+        return SL_OUT_OF_MEMORY;
     }
-    sl_status status = sl_csc_create(patch->nv, patch->nv, nnz, &graph);
+    list_pairs(patch, freedom, g->end, NULL);
+    for (int32_t i = 0; i < g->blocks; i++) {
+        g->first[i + 1] = g->first[i] + g->end[i];
+        g->end[i] = g->first[i];
+    }
+    g->hi = sl_alloc(g->first[g->blocks], sizeof *g->hi);
+    if (g->hi == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    list_pairs(patch, freedom, g->end, g->hi);
+    for (int32_t i = 0; i < g->blocks; i++) {
+        g->end[i] = sort_unique(g->hi, g->first[i], g->end[i]);
+    }
+    return SL_OK;
+}
+
+static void block_graph_clear(block_graph *g)
+{
+    sl_free(g->first);
+    sl_free(g->end);
+    sl_free(g->hi);
+}
+
+/* The pattern of H: column (i, c) has the rows (i, c) .. (i, size - 1) and all those of the blocks above i. */
+static sl_status create_matrix(const block_graph *g, sl_csc **out)
+{
+    int64_t nnz = 0, p = 0;
+    for (int32_t i = 0; i < g->blocks; i++) {
+        nnz += g->size * (g->size + 1) / 2 + (g->end[i] - g->first[i]) * g->size * g->size;
+    }
+    if (nnz >= INT32_MAX) {
+        return SL_OUT_OF_MEMORY;
+    }
+    const int32_t n = g->blocks * g->size;
+    const sl_status status = sl_csc_create(n, n, nnz + 1, out); /* one more: where what is held goes */
     if (status != SL_OK) {
         return status;
     }
-    for (int32_t v = 0; v < patch->nv; v++) {
-        graph->row[p++] = v;
-        for (int64_t i = first[v]; i < next[v]; i++) {
-            graph->row[p++] = hi[i];
+    sl_csc *H = *out;
+    for (int32_t i = 0; i < g->blocks; i++) {
+        for (int32_t c = 0; c < g->size; c++) {
+            for (int32_t r = c; r < g->size; r++) {
+                H->row[p++] = g->size * i + r;
+            }
+            for (int64_t k = g->first[i]; k < g->end[i]; k++) {
+                for (int32_t r = 0; r < g->size; r++) {
+                    H->row[p++] = g->size * g->hi[k] + r;
+                }
+            }
+            H->colptr[g->size * i + c + 1] = p;
         }
-        graph->colptr[v + 1] = p;
+    }
+    memset(H->val, 0, (size_t)(nnz + 1) * sizeof *H->val);
+    return SL_OK;
+}
+
+/* The entries that blocks a and b share, which are the triangle's unknowns from i and from j on. */
+static void place_pair(const block_graph *g, const sl_csc *H, int32_t a, int32_t b, int i, int j, int32_t *place)
+{
+    const int32_t lo = a < b ? a : b, hi = a < b ? b : a;
+    int64_t k = g->first[lo];
+    while (k < g->end[lo] && g->hi[k] != hi) {
+        k++;
+    }
+    SL_ASSERT(k < g->end[lo]);
+    const int64_t below = g->size * (k - g->first[lo] + 1);
+    for (int32_t r = 0; r < g->size; r++) {
+        for (int32_t c = 0; c < g->size; c++) { /* a column of a block has the rows of its own from the diagonal on */
+            const int32_t col = a < b ? r : c, row = a < b ? c : r;
+            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[g->size * lo + col] - col + below + row);
+        }
+    }
+}
+
+static void place_own(const block_graph *g, const sl_csc *H, int32_t a, int i, int j, int32_t *place)
+{
+    for (int32_t r = 0; r < g->size; r++) {
+        for (int32_t c = 0; c <= r; c++) {
+            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[g->size * a + c] + r - c);
+        }
+    }
+}
+
+static void find_places(const sl_patch *patch, const sl_stretch_freedom *freedom, const block_graph *g,
+                        sl_stretch_system *system)
+{
+    const int32_t nowhere = (int32_t)system->H->colptr[system->H->ncols];
+    for (int32_t t = 0; t < patch->nt; t++) {
+        int32_t *place = &system->place[SL_ELEMENT * (int64_t)t], block[CORNER_UNKNOWNS];
+        const int32_t count = blocks_of(patch, freedom, t, block);
+        for (int e = 0; e < SL_ELEMENT && freedom->unknown != NULL; e++) {
+            place[e] = nowhere;
+        }
+        for (int32_t i = 0; i < count; i++) {
+            for (int32_t j = 0; j <= i && block[i] >= 0; j++) {
+                if (block[j] == block[i]) {
+                    place_own(g, system->H, block[i], g->size * i, g->size * j, place);
+                } else if (block[j] >= 0) {
+                    place_pair(g, system->H, block[i], block[j], g->size * i, g->size * j, place);
+                }
+            }
+        }
+    }
+}
+
+/* A point in space a block, for geometric dissection; NULL where lines have none. */
+static const double *points_of(const sl_patch *patch, const sl_stretch_freedom *freedom, double *points)
+{
+    if (freedom->unknown == NULL || points == NULL) {
+        return freedom->unknown == NULL ? patch->xyz : NULL;
+    }
+    for (int32_t v = 0; v < patch->nv; v++) {
+        const int32_t u = freedom->unknown[2 * (int64_t)v];
+        if (u >= 0) {
+            memcpy(&points[3 * (int64_t)(u / 2)], &patch->xyz[3 * (int64_t)v], 3 * sizeof *points);
+        }
+    }
+    return points;
+}
+
+/* The order of elimination, found on the blocks. perm: unknowns. */
+static sl_status order_unknowns(const block_graph *g, const double *points, int32_t *perm)
+{
+    sl_csc *graph = NULL;
+    int64_t nnz = g->blocks, p = 0;
+    for (int32_t i = 0; i < g->blocks; i++) {
+        nnz += g->end[i] - g->first[i];
+    }
+    sl_status status = sl_csc_create(g->blocks, g->blocks, nnz, &graph);
+    if (status != SL_OK) {
+        return status;
+    }
+    for (int32_t i = 0; i < g->blocks; i++) {
+        graph->row[p++] = i;
+        for (int64_t k = g->first[i]; k < g->end[i]; k++) {
+            graph->row[p++] = g->hi[k];
+        }
+        graph->colptr[i + 1] = p;
     }
     memset(graph->val, 0, (size_t)nnz * sizeof *graph->val);
-    status = sl_order(graph, SL_ORDER_AUTO, patch->xyz, perm);
-    for (int32_t k = patch->nv; k-- > 0 && status == SL_OK;) { /* backwards: perm[k] is read before it is overwritten */
-        const int32_t v = perm[k];
-        perm[2 * (int64_t)k] = 2 * v;
-        perm[2 * (int64_t)k + 1] = 2 * v + 1;
+    status = sl_order(graph, SL_ORDER_AUTO, points, perm);
+    for (int32_t k = g->blocks; k-- > 0 && status == SL_OK;) { /* backwards: perm[k] is read before it is overwritten */
+        const int32_t i = perm[k];
+        for (int32_t c = 0; c < g->size; c++) {
+            perm[(int64_t)g->size * k + c] = g->size * i + c;
+        }
     }
     sl_csc_free(graph);
     return status;
 }
 
-/* The pattern of H, empty, and its factor's analysis. */
-static sl_status analyze(const sl_patch *patch, const int64_t *first, const int64_t *next, const int32_t *hi,
+static sl_status analyze(const sl_patch *patch, const sl_stretch_freedom *freedom, const block_graph *g,
                          sl_stretch_system *system)
 {
     sl_status status = SL_OK;
-    int64_t nnz = 3 * (int64_t)patch->nv;
-    int32_t *perm = sl_alloc(patch->nv, 2 * sizeof *perm);
-    if (perm == NULL) {
-        return SL_OUT_OF_MEMORY;
+    double *points = NULL;
+    int32_t *perm = sl_alloc(freedom->unknowns, sizeof *perm);
+    if (freedom->unknown != NULL && freedom->block == 2) {
+        points = sl_alloc(g->blocks, 3 * sizeof *points);
     }
-    for (int32_t v = 0; v < patch->nv; v++) {
-        nnz += 4 * (next[v] - first[v]);
+    if (perm == NULL || (points == NULL && freedom->unknown != NULL && freedom->block == 2)) {
+        status = SL_OUT_OF_MEMORY;
+        goto cleanup;
     }
-    SL_TRY(sl_csc_create(2 * patch->nv, 2 * patch->nv, nnz, &system->H));
-    fill_pattern(first, next, hi, system->H);
-    memset(system->H->val, 0, (size_t)nnz * sizeof *system->H->val);
-    SL_TRY(order_unknowns(patch, first, next, hi, perm));
+    SL_TRY(order_unknowns(g, points_of(patch, freedom, points), perm));
     sl_cholesky_def def = sl_cholesky_default();
     def.perm = perm;
     SL_TRY(sl_cholesky_analyze(system->H, &def, &system->factor));
 cleanup:
+    sl_free(points);
     sl_free(perm);
     return status;
 }
 
-sl_status sl_stretch_system_init(const sl_patch *patch, sl_stretch_system *system)
+sl_status sl_stretch_system_init(const sl_patch *patch, const sl_stretch_freedom *freedom, sl_stretch_system *system)
 {
     sl_status status = SL_OK;
+    block_graph g = {0};
     *system = (sl_stretch_system){0};
-    int64_t *first = sl_calloc((int64_t)patch->nv + 1, sizeof *first);
-    int64_t *next = sl_calloc((int64_t)patch->nv + 1, sizeof *next);
-    int32_t *hi = sl_alloc(3 * (int64_t)patch->nt, sizeof *hi);
-    system->slot = sl_alloc(3 * (int64_t)patch->nt, sizeof *system->slot);
-    if (first == NULL || next == NULL || hi == NULL || system->slot == NULL) {
-        status = SL_OUT_OF_MEMORY;
-        goto cleanup;
-    }
-    neighbours_above(patch, first, hi, next);
-    SL_TRY(analyze(patch, first, next, hi, system));
-    find_slots(patch, first, next, hi, system->H, system->slot);
+    SL_TRY(block_graph_init(patch, freedom, &g));
+    SL_TRY(create_matrix(&g, &system->H));
+    SL_TRY(analyze(patch, freedom, &g, system));
+    system->place = sl_alloc(patch->nt, SL_ELEMENT * sizeof *system->place);
+    system->reduced = sl_alloc(freedom->unknowns, sizeof *system->reduced);
     system->work = sl_alloc(sl_cholesky_work_size(system->factor, 1), sizeof *system->work);
-    status = system->work == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+    if (system->place == NULL || system->reduced == NULL || system->work == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    find_places(patch, freedom, &g, system);
 cleanup:
-    sl_free(first);
-    sl_free(next);
-    sl_free(hi);
+    block_graph_clear(&g);
     if (status != SL_OK) {
         sl_stretch_system_clear(system);
     }
@@ -172,122 +297,47 @@ void sl_stretch_system_clear(sl_stretch_system *system)
 {
     sl_csc_free(system->H);
     sl_cholesky_free(system->factor);
-    sl_free(system->slot);
+    sl_free(system->place);
+    sl_free(system->reduced);
     sl_free(system->work);
     *system = (sl_stretch_system){0};
 }
 
-/* q = Q g, the pull-back of mode Q to the three corners; the same map turns dpsi/dJ into forces. */
-static void pull_back(const double Q[4], const double g[4], double q[6])
+/* y = minus the part of the force that the unknowns feel. */
+static void reduce_force(const sl_stretch_freedom *freedom, const double *force, double *y)
 {
-    for (int r = 0; r < 2; r++) {
-        q[2 + r] = Q[2 * r] * g[0] + Q[2 * r + 1] * g[1];
-        q[4 + r] = Q[2 * r] * g[2] + Q[2 * r + 1] * g[3];
-        q[r] = -(q[2 + r] + q[4 + r]);
+    if (freedom->unknown == NULL) {
+        for (int32_t i = 0; i < freedom->unknowns; i++) {
+            y[i] = -force[i];
+        }
+        return;
     }
-}
-
-/* The projected 4 x 4 Hessian of a triangle's energy in J, times its weight. */
-static void density_hessian(double w, double weight, const double J[4], double H[4][4])
-{
-    double lambda[4], Q[16];
-    sl_stretch_density_modes(w, J, lambda, Q);
-    memset(H, 0, 16 * sizeof H[0][0]);
-    for (int m = 0; m < 4; m++) {
-        const double positive = lambda[m] > 0.0 ? weight * lambda[m] : 0.0;
-        for (int i = 0; i < 4; i++) {
-            const double scaled = positive * Q[4 * m + i];
-            for (int j = 0; j < 4; j++) {
-                H[i][j] += scaled * Q[4 * m + j];
-            }
+    memset(y, 0, (size_t)freedom->unknowns * sizeof *y);
+    for (int64_t i = 0; i < 2 * (int64_t)freedom->nv; i++) {
+        const int32_t u = freedom->unknown[i];
+        const double *f = &force[i - i % 2];
+        if (u >= 0 && freedom->basis == NULL) {
+            y[u] -= force[i];
+        } else if (u >= 0) {
+            const double *b = &freedom->basis[2 * i];
+            y[u] -= b[0] * f[0] + b[1] * f[1];
         }
     }
 }
 
-/* The projected 6 x 6 Hessian of one triangle in its corners' places: of corners 1 and 2 by the chain rule through
- * J = ... + p_1 g_1' + p_2 g_2', of corner 0 from its rows adding up to zero. */
-static void element_hessian(double w, double weight, const double J[4], const double g[4], double K[6][6])
+static void expand(const sl_stretch_freedom *freedom, const double *y, double *direction)
 {
-    double H[4][4], half[4][4]; /* half: rows of corners 1 and 2, columns of J */
-    density_hessian(w, weight, J, H);
-    for (int i = 0; i < 4; i++) {
-        const int row = 2 * (i % 2), k = i - i % 2;
-        for (int j = 0; j < 4; j++) {
-            half[i][j] = g[k] * H[row][j] + g[k + 1] * H[row + 1][j];
-        }
-    }
-    for (int i = 0; i < 4; i++) {
-        for (int s = 0; s < 2; s++) {
-            K[2 + i][2 + s] = half[i][2 * s] * g[0] + half[i][2 * s + 1] * g[1];
-            K[2 + i][4 + s] = half[i][2 * s] * g[2] + half[i][2 * s + 1] * g[3];
-        }
-    }
-    for (int i = 2; i < 6; i++) {
-        for (int s = 0; s < 2; s++) {
-            K[i][s] = K[s][i] = -(K[i][2 + s] + K[i][4 + s]);
-        }
-    }
-    for (int r = 0; r < 2; r++) {
-        for (int s = 0; s < 2; s++) {
-            K[r][s] = -(K[r][2 + s] + K[r][4 + s]);
-        }
+    for (int32_t v = 0; v < freedom->nv; v++) {
+        const double a = unknown_of(freedom, v, 0) >= 0 ? y[unknown_of(freedom, v, 0)] : 0.0;
+        const double b = unknown_of(freedom, v, 1) >= 0 ? y[unknown_of(freedom, v, 1)] : 0.0;
+        const double *e = freedom->basis != NULL ? &freedom->basis[4 * (int64_t)v] : NULL;
+        direction[2 * (int64_t)v] = e != NULL ? a * e[0] + b * e[2] : a;
+        direction[2 * (int64_t)v + 1] = e != NULL ? a * e[1] + b * e[3] : b;
     }
 }
 
-static void scatter(const int32_t v[3], const int64_t slot[3], double K[6][6], sl_csc *H)
-{
-    for (int k = 0; k < 3; k++) {
-        const int64_t p = H->colptr[2 * v[k]], q = H->colptr[2 * v[k] + 1];
-        H->val[p] += K[2 * k][2 * k];
-        H->val[p + 1] += K[2 * k + 1][2 * k];
-        H->val[q] += K[2 * k + 1][2 * k + 1];
-    }
-    for (int k = 0; k < 3; k++) {
-        const int next = (k + 1) % 3, lo = v[k] < v[next] ? k : next, hi = lo == k ? next : k;
-        /* Column 2 lo + 1 lacks the row 2 lo of the column before it: its block stands one entry nearer its top. */
-        const int64_t p = slot[k], q = H->colptr[2 * v[lo] + 1] + (p - H->colptr[2 * v[lo]]) - 1;
-        H->val[p] += K[2 * hi][2 * lo];
-        H->val[p + 1] += K[2 * hi + 1][2 * lo];
-        H->val[q] += K[2 * hi][2 * lo + 1];
-        H->val[q + 1] += K[2 * hi + 1][2 * lo + 1];
-    }
-}
-
-/* Adds weight P g, the force of one triangle, to the vertices' sums. */
-static void add_force(const int32_t v[3], double weight, const double P[4], const double g[4], double *sum)
-{
-    double q[6];
-    pull_back(P, g, q);
-    for (int k = 0; k < 3; k++) {
-        sum[2 * (int64_t)v[k]] += weight * q[2 * k];
-        sum[2 * (int64_t)v[k] + 1] += weight * q[2 * k + 1];
-    }
-}
-
-void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, double w, double cap, const double *uv,
-                         sl_stretch_system *system, double *gradient, double *force)
-{
-    sl_csc *H = system->H;
-    memset(H->val, 0, (size_t)H->colptr[H->ncols] * sizeof *H->val);
-    memset(gradient, 0, 2 * (size_t)patch->nv * sizeof *gradient);
-    memset(force, 0, 2 * (size_t)patch->nv * sizeof *force);
-    for (int32_t t = 0; t < patch->nt; t++) {
-        const int32_t *v = &patch->tri[3 * (int64_t)t];
-        double g[4], J[4], P[4], K[6][6];
-        memcpy(g, &rest->gradient[4 * (int64_t)t], sizeof g);
-        sl_stretch_jacobian(rest, patch->tri, uv, t, J);
-        sl_stretch_density_gradient(w, J, P);
-        add_force(v, rest->weight[t], P, g, gradient);
-        if (sl_stretch_soften(cap, J, g)) {
-            sl_stretch_density_gradient(w, J, P);
-        }
-        add_force(v, rest->weight[t], P, g, force);
-        element_hessian(w, rest->weight[t], J, g, K);
-        scatter(v, &system->slot[3 * (int64_t)t], K, H);
-    }
-}
-
-sl_status sl_stretch_direction(sl_stretch_system *system, const double *force, double *direction)
+sl_status sl_stretch_direction(const sl_stretch_freedom *freedom, sl_stretch_system *system, const double *force,
+                               double *direction)
 {
     sl_csc *H = system->H;
     sl_status status = SL_NOT_POSITIVE_DEFINITE;
@@ -302,39 +352,8 @@ sl_status sl_stretch_direction(sl_stretch_system *system, const double *force, d
     if (status != SL_OK) {
         return status == SL_BAD_INPUT ? SL_NOT_POSITIVE_DEFINITE : status; /* overflow: no step from here either */
     }
-    for (int32_t i = 0; i < H->ncols; i++) {
-        direction[i] = -force[i];
-    }
-    sl_cholesky_solve(system->factor, direction, 1, system->work);
+    reduce_force(freedom, force, system->reduced);
+    sl_cholesky_solve(system->factor, system->reduced, 1, system->work);
+    expand(freedom, system->reduced, direction);
     return SL_OK;
-}
-
-/* Smallest positive root of a t^2 + b t + c with c > 0; infinite when there is none. */
-static double first_root(double a, double b, double c)
-{
-    const double discriminant = b * b - 4.0 * a * c;
-    if (!(discriminant >= 0.0)) {
-        return INFINITY;
-    }
-    const double root = sqrt(discriminant);
-    if (b <= 0.0) { /* no cancellation in -b + root; with a < 0 the other root is negative and this one positive too */
-        return root - b > 0.0 ? 2.0 * c / (root - b) : INFINITY;
-    }
-    return a < 0.0 ? (-b - root) / (2.0 * a) : INFINITY;
-}
-
-double sl_stretch_step_bound(const sl_patch *patch, const double *uv, const double *direction)
-{
-    double bound = INFINITY;
-    for (int32_t t = 0; t < patch->nt; t++) {
-        const int64_t i = 2 * (int64_t)patch->tri[3 * t], j = 2 * (int64_t)patch->tri[3 * t + 1];
-        const int64_t k = 2 * (int64_t)patch->tri[3 * t + 2];
-        const double ex = uv[j] - uv[i], ey = uv[j + 1] - uv[i + 1];
-        const double fx = uv[k] - uv[i], fy = uv[k + 1] - uv[i + 1];
-        const double px = direction[j] - direction[i], py = direction[j + 1] - direction[i + 1];
-        const double qx = direction[k] - direction[i], qy = direction[k + 1] - direction[i + 1];
-        const double root = first_root(px * qy - py * qx, ex * qy - ey * qx + px * fy - py * fx, ex * fy - ey * fx);
-        bound = root < bound ? root : bound;
-    }
-    return bound;
 }

@@ -143,7 +143,7 @@ static double star_energy(const double *xyz, int32_t count, const double *uv, do
         memcpy(&tri[3 * i], (int32_t[]){0, 1 + i, 1 + (i + 1) % count}, 3 * sizeof *tri);
     }
     sl_patch *patch = chart_make(count + 1, xyz, count, tri);
-    sl_stretch_rest rest;
+    sl_stretch_rest rest = {0};
     assert_int_equal(sl_stretch_rest_init(patch, &rest), SL_OK);
     const double energy = sl_stretch_measure(&rest, patch->tri, w, uv).energy;
     sl_stretch_rest_clear(&rest);
