@@ -323,6 +323,16 @@ cleanup:
     return status;
 }
 
+/* By search, or by recursion alone. */
+static sl_status cut_mesh(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
+{
+    if (!def->best) {
+        return sl_segment(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation);
+    }
+    return sl_optimize_segment(atlas->mesh, atlas->triangulation, &def->segment, &def->optimize, context,
+                               &atlas->segmentation, &atlas->optimized);
+}
+
 sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context, sl_atlas **out,
                     sl_diag *diag)
 {
@@ -333,7 +343,7 @@ sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const 
     SL_TRY(sl_mesh_build(polygons, &atlas->mesh, &atlas->repair, diag));
     SL_TRY(sl_triangulation_create(atlas->mesh, &atlas->triangulation));
     if (def->seams == SL_SEAMS_AUTOMATIC) {
-        SL_TRY(sl_segment(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));
+        SL_TRY(cut_mesh(atlas, def, context));
         SL_TRY(require_flat(atlas, def, diag));
     } else {
         SL_TRY(sl_seams_cut(atlas->mesh, def->seams, &def->seam_input, diag));

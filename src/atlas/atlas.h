@@ -5,11 +5,14 @@
 
 #include "atlas/seams.h"
 #include "mesh/build.h"
+#include "optimize/optimize.h"
 #include "pack/pack.h"
 #include "segment/segment.h"
 
 typedef struct sl_atlas_def {
     sl_segment_def segment;
+    bool best; /* automatic seams by search, as `optimize` says, from the segmentation's cuts; default false */
+    sl_optimize_def optimize;
     sl_pack_def pack;
     sl_seam_source seams;     /* who cuts: default SL_SEAMS_AUTOMATIC */
     sl_seam_input seam_input; /* borrowed; what the other sources need */
@@ -43,6 +46,7 @@ typedef struct sl_atlas {
     sl_triangulation *triangulation;
     sl_repair_report repair;
     sl_segmentation *segmentation;
+    sl_optimize_info optimized; /* of the search, where def->best */
     double *corner_uv;       /* nh x 2, by mesh halfedge, quantised as files hold them, in [0, 1] */
     double *input_corner_uv; /* the same by input corner */
     sl_placement *placement; /* one a chart; a copy has its source's */

@@ -50,7 +50,7 @@ sl_flatten_def sl_flatten_default(void)
 
 const char *sl_flatten_method_name(sl_flatten_method method)
 {
-    static const char *const name[] = {"none", "abf++", "lscm", "tutte", "planar"};
+    static const char *const name[] = {"none", "abf++", "lscm", "tutte", "planar", "optimised"};
     return method >= 0 && (size_t)method < SL_COUNTOF(name) ? name[method] : "unknown";
 }
 

@@ -13,7 +13,8 @@ typedef enum sl_flatten_method {
     SL_FLATTEN_ABF,   /* ABF++ */
     SL_FLATTEN_LSCM,  /* least squares conformal */
     SL_FLATTEN_TUTTE, /* Tutte's embedding: reported as a fallback */
-    SL_FLATTEN_PLANAR /* one facet, or coplanar: projected */
+    SL_FLATTEN_PLANAR, /* one facet, or coplanar: projected */
+    SL_FLATTEN_OPTIMISED /* by the caller: a flip-free map that came with the cuts */
 } sl_flatten_method;
 
 /* Why a chart is not valid. */

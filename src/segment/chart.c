@@ -11,6 +11,10 @@ void sl_chart_job_clear(sl_chart_job *job)
     sl_cut_list_clear(&job->joined);
     sl_cut_list_clear(&job->seam);
     sl_copy_list_clear(&job->copies);
+    for (int32_t k = 0; k < job->nfinished; k++) {
+        sl_chart_job_clear(&job->finished[k]);
+    }
+    sl_free(job->finished);
     *job = (sl_chart_job){0};
 }
 
@@ -187,6 +191,9 @@ void sl_chart_job_run(const sl_recursion *r, sl_chart_job *job)
     SL_TRY(local_partners(r, piece, &partner));
     if (job->depth == 0) {
         SL_TRY(split_by_symmetry(r, piece, partner, job, &split));
+    }
+    if (!split && r->def->cutter != NULL && r->may_split && job->whole && piece->mesh->nf > 1) {
+        SL_TRY(sl_cut_piece(r, piece, job, &split));
     }
     if (!split) {
         SL_TRY(try_whole(r, piece, job));

@@ -56,6 +56,14 @@ cleanup:
     return status;
 }
 
+/* Nothing but an axis has cut these. */
+static void mark_whole(sl_job_list *list, int64_t start)
+{
+    for (int64_t k = start; k < list->count; k++) {
+        list->job[k].whole = true;
+    }
+}
+
 sl_status sl_component_jobs(const sl_mesh *mesh, sl_job_list *list)
 {
     int32_t parts = 0;
@@ -65,7 +73,9 @@ sl_status sl_component_jobs(const sl_mesh *mesh, sl_job_list *list)
     }
     sl_status status = sl_mesh_components(mesh, label, &parts);
     if (status == SL_OK) {
+        const int64_t start = list->count;
         status = push_parts(NULL, label, mesh->nf, parts, 0, list);
+        mark_whole(list, start);
     }
     sl_free(label);
     return status;
@@ -73,7 +83,12 @@ sl_status sl_component_jobs(const sl_mesh *mesh, sl_job_list *list)
 
 sl_status sl_part_jobs(const sl_chart_job *job, sl_job_list *list)
 {
-    return push_parts(job->face, job->part, job->count, job->nparts, job->depth + 1, list);
+    const int64_t start = list->count;
+    const sl_status status = push_parts(job->face, job->part, job->count, job->nparts, job->depth + 1, list);
+    if (job->split.symmetry == SL_SPLIT_MIRROR || job->split.symmetry == SL_SPLIT_PLANE) {
+        mark_whole(list, start);
+    }
+    return status;
 }
 
 typedef struct job_range {

@@ -76,7 +76,7 @@ void sl_chart_job_polish(const sl_recursion *r, sl_chart_job *job)
     sl_piece *piece = NULL;
     sl_patch *patch = NULL;
     double *uv = NULL;
-    if (job->flat.verdict != SL_CHART_VALID || !job->flat.stretch_minimised) {
+    if (job->settled || job->flat.verdict != SL_CHART_VALID || !job->flat.stretch_minimised) {
         return;
     }
     SL_TRY(sl_piece_create(r->mesh, r->triangulation, job->face, job->count, &piece));

@@ -74,7 +74,11 @@ static void cut_edge(run *r, int32_t h, int64_t splits)
 static sl_status finish(run *r, sl_chart_job *job)
 {
     for (int32_t k = 0; k < job->joined.count; k++) {
-        cut_edge(r, job->joined.halfedge[k], r->nsplit);
+        const int32_t h = job->joined.halfedge[k];
+        if (job->settled) {
+            r->first_cut[h] = r->first_cut[r->work->twin[h]] = SL_CUT_AXIS;
+        }
+        cut_edge(r, h, r->nsplit);
     }
     r->facets_done += job->count;
     return sl_job_list_push(&r->done, job);
@@ -98,9 +102,10 @@ static sl_status note_symmetry(run *r, const sl_chart_job *job)
 }
 
 /* A chart that is split: its seam is cut, its parts wait for the next generation. */
-static sl_status descend(run *r, const sl_chart_job *job, sl_job_list *next)
+static sl_status descend(run *r, sl_chart_job *job, sl_job_list *next)
 {
-    const uint8_t mark = job->split.symmetry != SL_SPLIT_PLAIN ? SL_CUT_AXIS : job->depth == 0 ? SL_CUT_FIRST : 0;
+    const bool stays = job->split.symmetry != SL_SPLIT_PLAIN || job->split.optimised;
+    const uint8_t mark = stays ? SL_CUT_AXIS : job->depth == 0 ? SL_CUT_FIRST : 0;
     sl_status status = sl_reserve((void **)&r->split, &r->split_capacity, r->nsplit + 1, sizeof *r->split);
     if (status != SL_OK) {
         return status;
@@ -117,7 +122,13 @@ static sl_status descend(run *r, const sl_chart_job *job, sl_job_list *next)
         }
         cut_edge(r, h, r->nsplit - 1);
     }
-    return sl_part_jobs(job, next);
+    for (int32_t k = 0; k < job->nfinished; k++) {
+        status = finish(r, &job->finished[k]);
+        if (status != SL_OK) {
+            return status;
+        }
+    }
+    return job->nfinished > 0 ? SL_OK : sl_part_jobs(job, next);
 }
 
 /* A chart that may not be split after all. One that was to be cut at its axis has not been flattened yet. */

@@ -37,6 +37,17 @@ typedef enum sl_symmetry_use {
     SL_SYMMETRY_USE_NEAR   /* near ones too: labelled approximate */
 } sl_symmetry_use;
 
+struct sl_segment_def;
+
+/* Cuts a whole piece at once, in place of the recursion: see sl_segment_def.cutter. piece: connected, a copy, in which
+ * the seams are to be cut; corner_uv: 2 a corner, each chart in its own frame. All charts must be embedded disks.
+ * *done = false leaves the piece to the recursion. */
+typedef struct sl_cutter {
+    sl_status (*cut)(void *user, sl_mesh *piece, const sl_triangulation *triangulation,
+                     const struct sl_segment_def *def, const sl_context *context, double *corner_uv, bool *done);
+    void *user;
+} sl_cutter;
+
 typedef struct sl_segment_def {
     sl_cut_method method;     /* default spectral */
     int32_t vsa_regions;      /* proxies of a component's first cut, then 2 a cut; 0 = by error (default) */
@@ -59,6 +70,8 @@ typedef struct sl_segment_def {
                              reported; default 100000 */
     int64_t memory_limit; /* bytes that one eigensolve, its matrix and results may take; 0 = none; default 0 */
     sl_flatten_def flatten;
+    const sl_cutter *cutter; /* borrowed; for components, and the halves of those cut at their axis; what comes of it
+                                is neither split nor sewn nor relaxed. NULL = the recursion cuts (default) */
 } sl_segment_def;
 
 sl_segment_def sl_segment_default(void);
@@ -93,13 +106,14 @@ typedef struct sl_split {
                      * PCA: axis the plane lies across, 0 = shortest; Fiedler: 1; others: clusters. -1 = a spectral cut
                      * had to do */
     double lambda;  /* eigenvalue; PCA: variance along the axis; VSA: L2,1 error over area; Iso-charts: the largest of
-                     * the scaling; embedding: mean squared distance from the centres; random: 0 */
+                     * the scaling; embedding:  mean squared distance from the centres; random: 0 */
     int32_t candidates; /* vectors that passed the filter; other methods: 1, 0 = none */
     int32_t parts;      /* charts made */
     double length;      /* seam length, normalised mesh */
     bool smoothed;
     sl_split_symmetry symmetry;
     int32_t fixed;              /* facets that straddle the axis: they stay with the first half and are not shared */
+    bool optimised;             /* by the cutter: all its charts at once, `length` with the seams inside them */
     sl_flatten_verdict because; /* why the chart had to be split (nothing is wrong with a component cut at its axis) */
 } sl_split;
 

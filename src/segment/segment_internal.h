@@ -106,6 +106,7 @@ void sl_copy_list_clear(sl_copy_list *list);
 typedef struct sl_chart_job {
     int32_t *face; /* count facets of the mesh, ascending */
     int32_t count, depth;
+    bool whole; /* a component, or what an axis left of one: the cutter's, where there is one */
     /* results */
     sl_status status;
     bool done; /* final: corner_uv, flat, topology and joined stand */
@@ -126,6 +127,10 @@ typedef struct sl_chart_job {
     int32_t source_face; /* first facet of the chart it copies */
     bool mirrored;
     sl_symmetry_kind kind;
+    /* a piece that the cutter cut */
+    struct sl_chart_job *finished; /* its nfinished charts, all done; owned */
+    int32_t nfinished;
+    bool settled; /* one of those: neither sewn nor relaxed */
 } sl_chart_job;
 
 void sl_chart_job_clear(sl_chart_job *job); /* frees, zeroes */
@@ -141,6 +146,10 @@ typedef struct sl_recursion {
     bool share;                /* look for symmetries */
     int32_t *place;            /* nf, see sl_piece; nullable */
 } sl_recursion;
+
+/* Has the piece cut by the cutter: job->finished, split and seam; *taken = false, the piece as it was, where the cutter
+ * did not do it or not all its charts are valid. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. */
+SL_NODISCARD sl_status sl_cut_piece(const sl_recursion *recursion, sl_piece *piece, sl_chart_job *job, bool *taken);
 
 /* Flattens a chart and, where that is not valid, splits it. The outcome, its status included, is in the job. */
 void sl_chart_job_run(const sl_recursion *recursion, sl_chart_job *job);

@@ -1,0 +1,209 @@
+/* Greedy cutting: the candidate of the best gain for its price, until the targets are met. */
+#include "optimize/optimize_internal.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static const int32_t PROBE_STEPS = 5;
+static const double LEAST_GAIN = 1e-3; /* of a whole budget: below it nothing is gained */
+static const double LEAST_PRICE = 1e-6;
+static const int BALANCE_EVERY = 3; /* cuts */
+
+/* The candidates of all charts, those of a chart until it changes. */
+typedef struct pool {
+    sl_opt_trial *trial;
+    int32_t *stamp; /* of the chart that each is for */
+    int64_t count, capacity, stamp_capacity;
+} pool;
+
+static void pool_clear(pool *p)
+{
+    for (int64_t k = 0; k < p->count; k++) {
+        sl_opt_trial_clear(&p->trial[k]);
+    }
+    sl_free(p->trial);
+    sl_free(p->stamp);
+}
+
+static void drop(pool *p, int64_t k)
+{
+    sl_opt_trial_clear(&p->trial[k]);
+    p->count--;
+    memmove(p->trial + k, p->trial + k + 1, (size_t)(p->count - k) * sizeof *p->trial);
+    memmove(p->stamp + k, p->stamp + k + 1, (size_t)(p->count - k) * sizeof *p->stamp);
+}
+
+static int32_t chart_of_stamp(const sl_opt_state *state, int32_t stamp)
+{
+    for (int32_t c = 0; c < state->nchart; c++) {
+        if (state->chart[c].stamp == stamp) {
+            return c;
+        }
+    }
+    return -1;
+}
+
+static bool is_known(const pool *p, int32_t stamp)
+{
+    for (int64_t k = 0; k < p->count; k++) {
+        if (p->stamp[k] == stamp) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static sl_status add_candidates(const sl_opt_state *state, int32_t c, pool *p)
+{
+    sl_status status = SL_OK;
+    sl_opt_trial *list = NULL;
+    int32_t count = 0;
+    SL_TRY(sl_opt_candidates(state, c, &list, &count));
+    SL_TRY(sl_reserve((void **)&p->trial, &p->capacity, p->count + count + 1, sizeof *p->trial));
+    SL_TRY(sl_reserve((void **)&p->stamp, &p->stamp_capacity, p->count + count + 1, sizeof *p->stamp));
+    for (int32_t k = 0; k < count; k++) {
+        if (list[k].nedge > 0) {
+            p->stamp[p->count] = state->chart[c].stamp;
+            p->trial[p->count++] = list[k];
+            list[k] = (sl_opt_trial){0};
+        }
+    }
+cleanup:
+    for (int32_t k = 0; list != NULL && k < count; k++) {
+        sl_opt_trial_clear(&list[k]);
+    }
+    sl_free(list);
+    return status;
+}
+
+typedef struct probing {
+    const sl_opt_state *state;
+    sl_opt_trial *trial;
+} probing;
+
+static void probe_range(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const probing *p = user;
+    for (int64_t k = begin; k < end; k++) {
+        sl_opt_trial *trial = &p->trial[k];
+        trial->status = sl_opt_trial_make(p->state, trial);
+        if (trial->status == SL_OK) {
+            trial->status = sl_opt_trial_probe(p->state, PROBE_STEPS, trial);
+        }
+    }
+}
+
+/* Candidates of charts that are gone go; charts that are new get theirs. */
+static sl_status refresh(sl_opt_state *state, pool *p)
+{
+    sl_status status = SL_OK;
+    for (int64_t k = p->count; k-- > 0;) {
+        const int32_t c = chart_of_stamp(state, p->stamp[k]);
+        if (c < 0) {
+            drop(p, k);
+        } else {
+            p->trial[k].old[0] = c;
+        }
+    }
+    const int64_t first = p->count;
+    for (int32_t c = 0; c < state->nchart; c++) {
+        if (!is_known(p, state->chart[c].stamp)) {
+            SL_TRY(add_candidates(state, c, p));
+        }
+    }
+    probing all = {state, p->trial + first};
+    state->info.trials += (int32_t)(p->count - first);
+    sl_parallel_for(state->context, p->count - first, 1, probe_range, &all);
+    for (int64_t k = first; k < p->count; k++) {
+        SL_TRY(p->trial[k].status);
+    }
+cleanup:
+    return status;
+}
+
+/* How much loss there is to lose before the targets are met; at least what one budget's hundredth weighs. */
+static double need(const sl_opt_state *state)
+{
+    sl_opt_total total;
+    double loss = 0.0;
+    sl_opt_totals(state, &total);
+    for (int64_t c = 0; c < state->nchart; c++) {
+        loss += sl_opt_loss(state, &state->chart[c].sums);
+    }
+    const double spare =
+        state->cost[0] * (state->def->target_stretch - 1.0) + state->cost[1] * (state->def->target_angle - 1.0);
+    return loss > spare ? loss - spare : HUGE_VAL;
+}
+
+static double score(const sl_opt_state *state, const sl_opt_trial *trial, double wanted)
+{
+    const double gain = sl_opt_loss(state, &state->chart[trial->old[0]].sums) - trial->loss;
+    const double price = state->def->seam_cost * trial->cost + state->def->chart_cost * (trial->nto - 1);
+    if (!trial->valid || !(gain > LEAST_GAIN)) {
+        return 0.0;
+    }
+    return fmin(gain, wanted) / fmax(price, LEAST_PRICE);
+}
+
+/* The best candidate, solved to the end; *taken = -1 = none is left. */
+static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
+{
+    sl_status status = SL_OK;
+    const double wanted = need(state);
+    *taken = -1;
+    while (*taken < 0) {
+        int64_t best = -1;
+        double most = 0.0;
+        for (int64_t k = 0; k < p->count; k++) {
+            const double s = score(state, &p->trial[k], wanted);
+            best = s > most ? k : best;
+            most = fmax(s, most);
+        }
+        if (best < 0) {
+            break;
+        }
+        if (!p->trial[best].settled) {
+            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
+        }
+        if (p->trial[best].valid && score(state, &p->trial[best], wanted) > 0.0) {
+            *taken = best;
+        } else {
+            p->trial[best].valid = false;
+        }
+    }
+cleanup:
+    return status;
+}
+
+sl_status sl_opt_cut(sl_opt_state *state)
+{
+    sl_status status = SL_OK;
+    pool p = {0};
+    for (int32_t k = 0; state->info.cuts < state->def->max_cuts; k++) {
+        sl_opt_total total;
+        int64_t taken;
+        sl_opt_totals(state, &total);
+        if (k % BALANCE_EVERY == 0 || sl_opt_within(state, &total)) {
+            SL_TRY(sl_opt_balance(state));
+            sl_opt_totals(state, &total);
+        }
+        if (sl_opt_within(state, &total)) {
+            break;
+        }
+        sl_opt_weigh(state);
+        SL_TRY(refresh(state, &p));
+        SL_TRY(choose(state, &p, &taken));
+        if (taken < 0) {
+            break;
+        }
+        SL_TRY(sl_opt_apply(state, &p.trial[taken]));
+        drop(&p, taken);
+        state->info.cuts++;
+    }
+cleanup:
+    pool_clear(&p);
+    return status;
+}

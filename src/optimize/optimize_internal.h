@@ -1,0 +1,154 @@
+/* What the optimiser's files share: the surface, its charts, trials.
+ * Layer: optimize (private). */
+#ifndef SL_OPTIMIZE_INTERNAL_H
+#define SL_OPTIMIZE_INTERNAL_H
+
+#include "mesh/patch.h"
+#include "optimize/optimize.h"
+
+/* The piece to be cut, as triangles. Halfedges are those of `patch`: corner c = 3 t + k. */
+typedef struct sl_opt_surface {
+    const sl_mesh *mesh; /* borrowed: the polygons */
+    sl_patch *patch;
+    double *length;    /* 3 nt: of a halfedge */
+    double *cost;      /* 3 nt: of cutting it, length times weight; HUGE_VAL inside a polygon */
+    double *rest;      /* 3 nt: x1, x2, y2 of a triangle laid flat: (0, 0), (x1, 0), (x2, y2) */
+    double *area;      /* nt */
+    uint8_t *measured; /* nt: 0 where the triangle is degenerate and counts nowhere */
+    double total;      /* area measured */
+    double unit;       /* sqrt(total): lengths are weighed in this unit */
+} sl_opt_surface;
+
+/* mesh must outlive the surface. weight: mesh->nh factors on the lengths, NULL = 1. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_opt_surface_init(const sl_mesh *mesh, const sl_triangulation *triangulation,
+                                           const double *weight, sl_opt_surface *out);
+void sl_opt_surface_clear(sl_opt_surface *surface);
+
+/* Sums over the triangles of a chart. */
+typedef struct sl_opt_sums {
+    double space, plane; /* areas A, a */
+    double inverse;      /* I */
+    double shear;        /* integral of s1/s2 - 1 */
+} sl_opt_sums;
+
+/* q = sqrt(I a) - A. */
+double sl_opt_stretch(const sl_opt_sums *sums);
+
+/* A chart: patch->corner and patch->facet are halfedges and triangles of the surface. */
+typedef struct sl_opt_chart {
+    sl_patch *patch;
+    double *uv; /* patch->nv x 2 */
+    sl_opt_sums sums;
+    int32_t stamp; /* differs whenever the chart does */
+} sl_opt_chart;
+
+void sl_opt_chart_clear(sl_opt_chart *chart);
+/* SL_OUT_OF_MEMORY: to be cleared all the same. */
+SL_NODISCARD sl_status sl_opt_chart_copy(const sl_opt_chart *chart, sl_opt_chart *out);
+
+/* density: nullable, patch->nt x 2: each triangle's share of q, of the shear. */
+void sl_opt_measure(const sl_opt_surface *surface, const sl_patch *patch, const double *uv, sl_opt_sums *sums,
+                    double *density);
+
+/* The triangles list[0 .. count - 1] of the surface, unglued along cut edges; local: surface nt work, all -1 before and
+ * after. One component is the caller's part. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_opt_extract(const sl_opt_surface *surface, const uint8_t *cut, const int32_t *list,
+                                      int32_t count, int32_t *local, sl_patch **out);
+
+/* The state: which edges are cut, and the charts that makes. */
+typedef struct sl_opt_state {
+    const sl_opt_surface *surface;
+    const sl_optimize_def *def;
+    const sl_context *context;
+    uint8_t *cut;      /* 3 nt, the same for both halfedges of an edge */
+    uint8_t *keep;     /* 3 nt: never to be sewn */
+    double *uv;        /* 3 nt x 2: of a corner, in its chart's frame */
+    int32_t *chart_of; /* nt */
+    sl_opt_chart *chart;
+    int64_t nchart, capacity;
+    int32_t next_stamp;
+    double w;       /* of the energy */
+    double cost[2]; /* what q / A and shear / A weigh: see sl_opt_weigh */
+    sl_optimize_info info;
+} sl_opt_state;
+
+/* The atlas as a whole. */
+typedef struct sl_opt_total {
+    double stretch, angle; /* L2 and mean s1/s2 */
+    double length;         /* of the seams over sqrt(area) */
+    double worst;          /* L2 of the worst chart */
+} sl_opt_total;
+
+SL_NODISCARD sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def *def,
+                                         const sl_context *context, sl_opt_state *out);
+void sl_opt_state_clear(sl_opt_state *state);
+/* A deep copy, to come back to. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_opt_state_copy(const sl_opt_state *state, sl_opt_state *out);
+void sl_opt_totals(const sl_opt_state *state, sl_opt_total *out);
+bool sl_opt_within(const sl_opt_state *state, const sl_opt_total *total);
+/* Chooses what stretch and shear weigh from how far each is from its target. */
+void sl_opt_weigh(sl_opt_state *state);
+double sl_opt_loss(const sl_opt_state *state, const sl_opt_sums *sums);
+
+/* A change of some edges' flags and the charts that come of it. */
+typedef struct sl_opt_trial {
+    int32_t *edge; /* nedge halfedges, one an edge; owned */
+    int32_t nedge;
+    bool sew;         /* else they are cut */
+    int32_t old[2];   /* charts that it replaces; -1 = only one */
+    sl_opt_chart *to; /* nto, owned */
+    int32_t nto;
+    bool valid;    /* all disks, and without flips */
+    bool settled;  /* solved to the end, no overlap */
+    double length; /* of the edges, over sqrt(area) */
+    double cost;   /* with weights */
+    double loss;   /* of the charts that come of it */
+    double rank;
+    sl_status status;
+} sl_opt_trial;
+
+void sl_opt_trial_clear(sl_opt_trial *trial);
+
+/* Extracts the charts that come of a trial, with the UVs at hand. trial->valid = false where one is no disk. */
+SL_NODISCARD sl_status sl_opt_trial_make(const sl_opt_state *state, sl_opt_trial *trial);
+
+/* A few Newton steps for ranking a cut. */
+SL_NODISCARD sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_trial *trial);
+
+/* Solves the charts to the end and proves them embedded; trial->valid = trial->settled = the outcome. */
+SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial);
+
+/* Replaces the charts of the state by the trial's, which is emptied. SL_OUT_OF_MEMORY leaves all as it was. */
+SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
+
+/* Solves a chart: warm from uv (flip-free) or, where warm is false, from nothing. *embedded = proven. */
+SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, bool warm, double *uv,
+                                    bool *embedded);
+
+/* Solves every chart again with state->w. */
+SL_NODISCARD sl_status sl_opt_resolve(sl_opt_state *state);
+
+/* The weight of the energy that meets both targets best; solves every chart with it. */
+SL_NODISCARD sl_status sl_opt_balance(sl_opt_state *state);
+
+/* Candidate cuts of chart c: darts, chords, bisections. *list (owned) and *count. */
+SL_NODISCARD sl_status sl_opt_candidates(const sl_opt_state *state, int32_t c, sl_opt_trial **list, int32_t *count);
+
+/* Two smoothed spectral bisections of chart c, appended. */
+SL_NODISCARD sl_status sl_opt_bisections(const sl_opt_state *state, int32_t c, sl_opt_trial *list, int32_t *count);
+
+/* Cuts greedily until the targets are met. */
+SL_NODISCARD sl_status sl_opt_cut(sl_opt_state *state);
+
+/* Parts of seams that may be sewn, as trials not yet made; *list (owned), also after failure. */
+SL_NODISCARD sl_status sl_opt_windows(const sl_opt_state *state, sl_opt_trial **list, int64_t *count);
+
+/* Sews greedily while the targets stay met. */
+SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);
+
+/* The first charts: spectral cuts of the surface's mesh, recursing where one fails or exceeds def->start_stretch.
+ * *started = false where none was found. */
+SL_NODISCARD sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment,
+                                    const sl_triangulation *triangulation, bool *started);
+
+#endif

@@ -1,0 +1,286 @@
+/* Sewing: windows of seams are closed again, the cheapest in distortion first, while the targets stay met. */
+#include "optimize/optimize_internal.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BATCH = 4 };                   /* windows solved at a time, whatever the number of threads */
+static const double HOPE = 0.97;      /* geometric mean of the shares of both budgets below which a balance is tried */
+static const double LEAST_GAP = 1e-4; /* of the surface's unit: gaps below it are as good as none */
+static const int32_t TRIALS_A_ROUND = 24; /* without success, then sewing ends */
+
+/* A window that was refused. */
+typedef struct refusal {
+    int32_t stamp[2], ends[2];
+} refusal;
+
+typedef struct sewing {
+    sl_opt_state *state;
+    sl_opt_trial *list;
+    int64_t count;
+    refusal *refused;
+    int64_t nrefused, capacity;
+} sewing;
+
+static void clear_windows(sewing *s)
+{
+    for (int64_t k = 0; k < s->count; k++) {
+        sl_opt_trial_clear(&s->list[k]);
+    }
+    sl_free(s->list);
+    s->list = NULL;
+    s->count = 0;
+}
+
+static refusal refusal_of(const sewing *s, const sl_opt_trial *t)
+{
+    return (refusal){{s->state->chart[t->old[0]].stamp, t->old[1] < 0 ? -1 : s->state->chart[t->old[1]].stamp},
+                     {t->edge[0], t->edge[t->nedge - 1]}};
+}
+
+static bool was_refused(const sewing *s, const sl_opt_trial *t)
+{
+    const refusal r = refusal_of(s, t);
+    for (int64_t k = 0; k < s->nrefused; k++) {
+        if (memcmp(&s->refused[k], &r, sizeof r) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static sl_status refuse(sewing *s, const sl_opt_trial *t)
+{
+    const sl_status status = sl_reserve((void **)&s->refused, &s->capacity, s->nrefused + 1, sizeof *s->refused);
+    if (status == SL_OK) {
+        s->refused[s->nrefused++] = refusal_of(s, t);
+    }
+    return status;
+}
+
+/* Sums over a window's points for the rigid motion that brings its right bank to its left one. */
+typedef struct alignment {
+    double mass, left[2], right[2], dot, cross, square;
+} alignment;
+
+static void add_point(const sl_opt_state *state, int32_t l, int32_t r, double mass, alignment *a)
+{
+    const double *p = state->uv + 2 * (int64_t)l, *q = state->uv + 2 * (int64_t)r;
+    a->mass += mass;
+    for (int k = 0; k < 2; k++) {
+        a->left[k] += mass * p[k];
+        a->right[k] += mass * q[k];
+    }
+    a->dot += mass * (p[0] * q[0] + p[1] * q[1]);
+    a->cross += mass * (q[0] * p[1] - q[1] * p[0]);
+    a->square += mass * (p[0] * p[0] + p[1] * p[1] + q[0] * q[0] + q[1] * q[1]);
+}
+
+/* Mean square distance of the banks: after the best rigid motion between two charts, as they lie within one. */
+static double gap_of(const sl_opt_state *state, const sl_opt_trial *t)
+{
+    const int32_t *twin = state->surface->patch->twin;
+    alignment a = {0};
+    for (int32_t k = 0; k < t->nedge; k++) {
+        const int32_t h = t->edge[k], g = twin[h];
+        const double mass = 0.5 * state->surface->length[h];
+        add_point(state, h, sl_corner_next(g), mass, &a);
+        add_point(state, sl_corner_next(h), g, mass, &a);
+    }
+    if (!(a.mass > 0.0)) {
+        return 0.0;
+    }
+    if (t->old[1] < 0) {
+        return fmax(a.square - 2.0 * a.dot, 0.0) / a.mass;
+    }
+    const double ll = a.left[0] * a.left[0] + a.left[1] * a.left[1];
+    const double rr = a.right[0] * a.right[0] + a.right[1] * a.right[1];
+    const double dot = a.dot - (a.left[0] * a.right[0] + a.left[1] * a.right[1]) / a.mass;
+    const double cross = a.cross - (a.right[0] * a.left[1] - a.right[1] * a.left[0]) / a.mass;
+    return fmax(a.square - (ll + rr) / a.mass - 2.0 * hypot(dot, cross), 0.0) / a.mass;
+}
+
+static double saving(const sl_opt_state *state, const sl_opt_trial *t)
+{
+    double cost = 0.0;
+    for (int32_t k = 0; k < t->nedge; k++) {
+        cost += state->surface->cost[t->edge[k]];
+    }
+    return state->def->seam_cost * cost / state->surface->unit + (t->old[1] >= 0 ? state->def->chart_cost : 0.0);
+}
+
+static int by_rank(const void *x, const void *y)
+{
+    const sl_opt_trial *a = x, *b = y;
+    if (a->rank != b->rank) {
+        return a->rank < b->rank ? 1 : -1;
+    }
+    if (a->edge[0] != b->edge[0]) {
+        return a->edge[0] < b->edge[0] ? -1 : 1;
+    }
+    return (a->nedge > b->nedge) - (a->nedge < b->nedge);
+}
+
+static sl_status list_windows(sewing *s)
+{
+    clear_windows(s);
+    const sl_status status = sl_opt_windows(s->state, &s->list, &s->count);
+    if (status != SL_OK) {
+        return status;
+    }
+    const double unit = s->state->surface->unit;
+    for (int64_t k = 0; k < s->count; k++) {
+        s->list[k].rank = saving(s->state, &s->list[k]) / (sqrt(gap_of(s->state, &s->list[k])) / unit + LEAST_GAP);
+    }
+    if (s->count > 1) {
+        qsort(s->list, (size_t)s->count, sizeof *s->list, by_rank);
+    }
+    return SL_OK;
+}
+
+static void settle_range(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const sewing *s = ((sewing **)user)[0];
+    sl_opt_trial **batch = ((sl_opt_trial ***)user)[1];
+    for (int64_t k = begin; k < end; k++) {
+        sl_opt_trial *t = batch[k];
+        t->status = sl_opt_trial_make(s->state, t);
+        if (t->status == SL_OK && t->valid) {
+            t->status = sl_opt_trial_settle(s->state, t);
+        }
+    }
+}
+
+/* Shares of the two budgets as they would be, the larger and the geometric mean; HUGE_VAL where it is no candidate. */
+static void judge(const sl_opt_state *state, const sl_opt_trial *t, double *largest, double *mean)
+{
+    const sl_optimize_def *def = state->def;
+    sl_opt_total total;
+    *largest = *mean = HUGE_VAL;
+    if (!t->valid) {
+        return;
+    }
+    sl_opt_totals(state, &total);
+    double q = total.stretch - 1.0, r = total.angle - 1.0;
+    for (int j = 0; j < 2; j++) {
+        if (t->old[j] >= 0) {
+            q -= sl_opt_stretch(&state->chart[t->old[j]].sums) / state->surface->total;
+            r -= state->chart[t->old[j]].sums.shear / state->surface->total;
+        }
+    }
+    for (int32_t k = 0; k < t->nto; k++) {
+        const sl_opt_sums *sums = &t->to[k].sums;
+        q += sl_opt_stretch(sums) / state->surface->total;
+        r += sums->shear / state->surface->total;
+        if (sums->space > 0.0 && 1.0 + sl_opt_stretch(sums) / sums->space > def->max_stretch) {
+            return;
+        }
+    }
+    q /= fmax(def->target_stretch - 1.0, 1e-9);
+    r /= fmax(def->target_angle - 1.0, 1e-9);
+    *largest = fmax(q, r);
+    *mean = sqrt(fmax(q, 0.0) * fmax(r, 0.0));
+}
+
+/* Applies the trial; where only another weight of the energy could keep the targets met, tries that, and puts all back
+ * if it does not. */
+static sl_status accept(sewing *s, sl_opt_trial *t, double largest, bool *accepted)
+{
+    sl_status status = SL_OK;
+    sl_opt_state before = {0};
+    *accepted = true;
+    if (largest <= 1.0) {
+        return sl_opt_apply(s->state, t);
+    }
+    SL_TRY(sl_opt_state_copy(s->state, &before));
+    SL_TRY(sl_opt_apply(s->state, t));
+    SL_TRY(sl_opt_balance(s->state));
+    sl_opt_total total;
+    sl_opt_totals(s->state, &total);
+    *accepted = sl_opt_within(s->state, &total);
+    if (!*accepted) {
+        before.next_stamp = s->state->next_stamp;
+        const sl_opt_state swap = *s->state;
+        *s->state = before;
+        before = swap;
+    }
+cleanup:
+    sl_opt_state_clear(&before);
+    return status;
+}
+
+/* Solves the next windows of the list and takes the best that keeps the targets; *progress = something was sewn. */
+static sl_status try_batch(sewing *s, int32_t *tried, bool *progress)
+{
+    sl_status status = SL_OK;
+    sl_opt_trial *batch[BATCH];
+    int32_t n = 0;
+    *progress = false;
+    for (int64_t k = 0; k < s->count && n < BATCH; k++) {
+        if (s->list[k].nedge > 0 && !was_refused(s, &s->list[k])) { /* one that was put back is empty */
+            batch[n++] = &s->list[k];
+        }
+    }
+    void *user[2] = {s, batch};
+    sl_parallel_for(s->state->context, n, 1, settle_range, user);
+    s->state->info.trials += n;
+    *tried = n;
+    double largest[BATCH], mean[BATCH], worth[BATCH];
+    for (int32_t k = 0; k < n; k++) {
+        SL_TRY(batch[k]->status);
+        judge(s->state, batch[k], &largest[k], &mean[k]);
+        const bool hope = largest[k] <= 1.0 || mean[k] <= HOPE;
+        worth[k] = hope ? saving(s->state, batch[k]) / (0.05 + mean[k]) : 0.0;
+        if (!hope) {
+            SL_TRY(refuse(s, batch[k]));
+        }
+    }
+    while (!*progress) {
+        int32_t best = -1;
+        for (int32_t k = 0; k < n; k++) {
+            best = worth[k] > 0.0 && (best < 0 || worth[k] > worth[best]) ? k : best;
+        }
+        if (best < 0) {
+            break;
+        }
+        worth[best] = 0.0;
+        const refusal key = refusal_of(s, batch[best]);
+        SL_TRY(accept(s, batch[best], largest[best], progress));
+        if (!*progress) { /* the trial's charts are gone with the state they were in */
+            SL_TRY(sl_reserve((void **)&s->refused, &s->capacity, s->nrefused + 1, sizeof *s->refused));
+            s->refused[s->nrefused++] = key;
+        }
+    }
+    s->state->info.sewings += *progress;
+cleanup:
+    return status;
+}
+
+sl_status sl_opt_sew(sl_opt_state *state)
+{
+    sl_status status = SL_OK;
+    sewing s = {.state = state};
+    int32_t idle = 0;
+    sl_opt_weigh(state);
+    SL_TRY(list_windows(&s));
+    while (idle < TRIALS_A_ROUND) {
+        int32_t tried = 0;
+        bool progress;
+        SL_TRY(try_batch(&s, &tried, &progress));
+        if (tried == 0) {
+            break;
+        }
+        idle = progress ? 0 : idle + tried;
+        if (progress) {
+            SL_TRY(list_windows(&s));
+        }
+    }
+cleanup:
+    clear_windows(&s);
+    sl_free(s.refused);
+    return status;
+}

@@ -1,0 +1,241 @@
+/* Charts laid flat: warm from the UVs at hand where that can be, else from nothing; proven to be embedded. */
+#include "optimize/optimize_internal.h"
+
+#include "base/memory.h"
+#include "overlap/certificate.h"
+#include "param/open.h"
+#include "param/stretch.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double SETTLED = 1e-4;       /* relative decrease at which a chart is solved */
+static const double OPEN_SHARE = 0x1p-10; /* of a border edge: room made between the banks of a fresh cut */
+static const double W_LOW = -4.0, W_HIGH = 1.0;
+static const int BALANCE_ROUNDS = 6;
+static const double BALANCED = 0.02; /* the two shares of the budgets agree within this ratio */
+
+static sl_stretch_def stretch_def(const sl_opt_state *state)
+{
+    sl_stretch_def def = sl_stretch_default();
+    def.w = state->w;
+    def.relative_decrease = SETTLED;
+    return def;
+}
+
+static sl_status list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
+{
+    int32_t *first = NULL, *halfedge = NULL;
+    sl_status status = sl_patch_border(patch, &first, &halfedge);
+    if (status != SL_OK) {
+        return status;
+    }
+    *nb = first[patch->loops];
+    *border = sl_alloc(2 * (int64_t)*nb, sizeof **border);
+    for (int32_t b = 0; b < *nb && *border != NULL; b++) {
+        (*border)[2 * b] = patch->tri[halfedge[b]];
+        (*border)[2 * b + 1] = patch->tri[sl_corner_next(halfedge[b])];
+    }
+    sl_free(first);
+    sl_free(halfedge);
+    return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
+}
+
+/* What a solver says when it has no map to offer is an outcome here. */
+static sl_status outcome(sl_status status, bool *solved)
+{
+    *solved = status == SL_OK;
+    const bool none = status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_NOT_POSITIVE_DEFINITE ||
+                      status == SL_INFEASIBLE;
+    return none ? SL_OK : status;
+}
+
+/* A chart on its way through the attempts. */
+typedef struct attempt {
+    const sl_patch *patch;
+    const sl_context *context;
+    sl_stretch_def def;
+    int32_t nb, *border;
+    double *start, *work; /* 2 nv, nv */
+} attempt;
+
+static sl_status certify(const attempt *a, const double *uv, bool *embedded)
+{
+    sl_certificate certificate = {0};
+    const sl_status status = sl_certify_embedding(uv, a->patch->nt, a->patch->tri, a->nb, a->border, &certificate);
+    *embedded = status == SL_OK && certificate.embedded;
+    return status == SL_BAD_INPUT ? SL_OK : status;
+}
+
+/* From the map in start; where that ends in an overlap, once more with the border kept simple all the way. */
+static sl_status solve_warm(attempt *a, double *uv, bool *embedded)
+{
+    sl_status status = SL_OK;
+    const size_t size = 2 * (size_t)a->patch->nv * sizeof *uv;
+    bool solved = false;
+    *embedded = false;
+    memcpy(a->start, uv, size);
+    SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
+    if (solved) {
+        SL_TRY(certify(a, uv, embedded));
+    }
+    if (!solved || *embedded) {
+        goto cleanup;
+    }
+    sl_open_border(a->patch, a->nb, a->border, a->start, OPEN_SHARE, 0.0, a->work, uv);
+    SL_TRY(certify(a, uv, &solved));
+    if (solved) {
+        a->def.simple_border = true;
+        SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
+        a->def.simple_border = false;
+        SL_TRY(certify(a, uv, embedded));
+    }
+cleanup:
+    return status;
+}
+
+static sl_status solve_cold(attempt *a, double *uv, bool *embedded)
+{
+    sl_status status = SL_OK;
+    *embedded = false;
+    for (int k = 0; k < 2 && !*embedded; k++) {
+        bool solved = false;
+        a->def.simple_border = k == 1;
+        SL_TRY(outcome(sl_stretch_unfold(a->patch, &a->def, a->context, uv, NULL), &solved));
+        if (!solved) {
+            break;
+        }
+        SL_TRY(certify(a, uv, embedded));
+    }
+cleanup:
+    return status;
+}
+
+sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, bool warm, double *uv, bool *embedded)
+{
+    sl_status status = SL_OK;
+    attempt a = {.patch = patch, .def = stretch_def(state)};
+    *embedded = false;
+    if (!sl_patch_is_disk(patch)) {
+        return SL_OK;
+    }
+    a.start = sl_alloc(2 * (int64_t)patch->nv, sizeof *a.start);
+    a.work = sl_alloc(patch->nv, sizeof *a.work);
+    SL_TRY(a.start == NULL || a.work == NULL ? SL_OUT_OF_MEMORY : SL_OK);
+    SL_TRY(list_border(patch, &a.nb, &a.border));
+    if (warm) {
+        SL_TRY(solve_warm(&a, uv, embedded));
+    }
+    if (!*embedded) {
+        SL_TRY(solve_cold(&a, uv, embedded));
+    }
+cleanup:
+    sl_free(a.start);
+    sl_free(a.work);
+    sl_free(a.border);
+    return status;
+}
+
+/* All charts with another weight, beside those of the state. */
+typedef struct resolution {
+    sl_opt_state *state;
+    double **uv;
+    sl_opt_sums *sums;
+    sl_status *status;
+    bool *embedded;
+} resolution;
+
+static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const resolution *r = user;
+    for (int64_t c = begin; c < end; c++) {
+        const sl_opt_chart *chart = &r->state->chart[c];
+        r->uv[c] = sl_copy(chart->uv, 2 * (int64_t)chart->patch->nv, sizeof **r->uv);
+        r->status[c] =
+            r->uv[c] == NULL ? SL_OUT_OF_MEMORY : sl_opt_solve(r->state, chart->patch, true, r->uv[c], &r->embedded[c]);
+        if (r->status[c] == SL_OK && r->embedded[c]) {
+            sl_opt_measure(r->state->surface, chart->patch, r->uv[c], &r->sums[c], NULL);
+        }
+    }
+}
+
+static void take(sl_opt_state *state, int64_t c, double *uv, const sl_opt_sums *sums)
+{
+    sl_opt_chart *chart = &state->chart[c];
+    sl_free(chart->uv);
+    chart->uv = uv;
+    chart->sums = *sums;
+    chart->stamp = state->next_stamp++;
+    for (int32_t k = 0; k < 3 * chart->patch->nt; k++) {
+        memcpy(state->uv + 2 * (int64_t)chart->patch->corner[k], uv + 2 * (int64_t)chart->patch->tri[k],
+               2 * sizeof *uv);
+    }
+}
+
+sl_status sl_opt_resolve(sl_opt_state *state)
+{
+    sl_status status = SL_OK;
+    const int64_t n = state->nchart;
+    resolution r = {.state = state,
+                    .uv = sl_calloc(n, sizeof *r.uv),
+                    .sums = sl_calloc(n, sizeof *r.sums),
+                    .status = sl_calloc(n, sizeof *r.status),
+                    .embedded = sl_calloc(n, sizeof *r.embedded)};
+    if (r.uv == NULL || r.sums == NULL || r.status == NULL || r.embedded == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    sl_parallel_for(state->context, n, 1, resolve_range, &r);
+    for (int64_t c = 0; c < n; c++) {
+        SL_TRY(r.status[c]);
+    }
+    for (int64_t c = 0; c < n; c++) {
+        if (r.embedded[c]) { /* otherwise the chart keeps the map it has */
+            take(state, c, r.uv[c], &r.sums[c]);
+            r.uv[c] = NULL;
+        }
+    }
+cleanup:
+    for (int64_t c = 0; c < n && r.uv != NULL; c++) {
+        sl_free(r.uv[c]);
+    }
+    sl_free(r.uv);
+    sl_free(r.sums);
+    sl_free(r.status);
+    sl_free(r.embedded);
+    return status;
+}
+
+/* ln of the share of the stretch budget used over that of the angle budget: falls as w rises. */
+static double imbalance(const sl_opt_state *state)
+{
+    sl_opt_total total;
+    sl_opt_totals(state, &total);
+    const double least = 1e-9;
+    return log(fmax(total.stretch - 1.0, least) / fmax(state->def->target_stretch - 1.0, least)) -
+           log(fmax(total.angle - 1.0, least) / fmax(state->def->target_angle - 1.0, least));
+}
+
+/* Regula falsi with bisection where it stalls; a piece that is flat anyway has nothing to balance. */
+sl_status sl_opt_balance(sl_opt_state *state)
+{
+    sl_status status = SL_OK;
+    double low = W_LOW, high = W_HIGH, step = 0.25;
+    for (int k = 0; k < BALANCE_ROUNDS; k++) {
+        const double f = imbalance(state);
+        if (fabs(f) < BALANCED || (f > 0.0 && state->w >= W_HIGH) || (f < 0.0 && state->w <= W_LOW)) {
+            break;
+        }
+        if (f > 0.0) { /* too much stretch */
+            low = state->w;
+            state->w = high < W_HIGH ? 0.5 * (low + high) : fmin(W_HIGH, state->w + step);
+        } else {
+            high = state->w;
+            state->w = low > W_LOW ? 0.5 * (low + high) : fmax(W_LOW, state->w - step);
+        }
+        step *= 2.0;
+        SL_TRY(sl_opt_resolve(state));
+    }
+cleanup:
+    return status;
+}

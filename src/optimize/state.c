@@ -1,0 +1,172 @@
+/* The state of the search and what it is worth. */
+#include "optimize/optimize_internal.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double MET_WEIGHT = 0.15; /* of a target that is met, against one that is not */
+
+sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def *def, const sl_context *context,
+                            sl_opt_state *out)
+{
+    const int64_t nt = surface->patch->nt;
+    *out = (sl_opt_state){.surface = surface, .def = def, .context = context};
+    out->cut = sl_calloc(3 * nt, sizeof *out->cut);
+    out->keep = sl_calloc(3 * nt, sizeof *out->keep);
+    out->uv = sl_calloc(6 * nt, sizeof *out->uv);
+    out->chart_of = sl_alloc(nt, sizeof *out->chart_of);
+    if (out->cut == NULL || out->keep == NULL || out->uv == NULL || out->chart_of == NULL) {
+        sl_opt_state_clear(out);
+        return SL_OUT_OF_MEMORY;
+    }
+    memset(out->chart_of, 0xff, (size_t)nt * sizeof *out->chart_of);
+    return SL_OK;
+}
+
+void sl_opt_state_clear(sl_opt_state *state)
+{
+    for (int64_t c = 0; c < state->nchart; c++) {
+        sl_opt_chart_clear(&state->chart[c]);
+    }
+    sl_free(state->chart);
+    sl_free(state->cut);
+    sl_free(state->keep);
+    sl_free(state->uv);
+    sl_free(state->chart_of);
+    *state = (sl_opt_state){0};
+}
+
+sl_status sl_opt_state_copy(const sl_opt_state *state, sl_opt_state *out)
+{
+    const int64_t nt = state->surface->patch->nt;
+    sl_status status = SL_OK;
+    *out = *state;
+    out->cut = sl_copy(state->cut, 3 * nt, sizeof *out->cut);
+    out->keep = sl_copy(state->keep, 3 * nt, sizeof *out->keep);
+    out->uv = sl_copy(state->uv, 6 * nt, sizeof *out->uv);
+    out->chart_of = sl_copy(state->chart_of, nt, sizeof *out->chart_of);
+    out->chart = sl_calloc(state->nchart, sizeof *out->chart);
+    out->capacity = state->nchart;
+    out->nchart = 0;
+    if (out->cut == NULL || out->keep == NULL || out->uv == NULL || out->chart_of == NULL || out->chart == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
+    }
+    while (out->nchart < state->nchart) {
+        const int64_t c = out->nchart++;
+        SL_TRY(sl_opt_chart_copy(&state->chart[c], &out->chart[c]));
+    }
+cleanup:
+    if (status != SL_OK) {
+        sl_opt_state_clear(out);
+    }
+    return status;
+}
+
+void sl_opt_totals(const sl_opt_state *state, sl_opt_total *out)
+{
+    const sl_opt_surface *s = state->surface;
+    double stretch = 0.0, shear = 0.0, length = 0.0;
+    *out = (sl_opt_total){.worst = 1.0};
+    for (int64_t c = 0; c < state->nchart; c++) {
+        const sl_opt_sums *sums = &state->chart[c].sums;
+        stretch += sl_opt_stretch(sums);
+        shear += sums->shear;
+        out->worst = sums->space > 0.0 ? fmax(out->worst, 1.0 + sl_opt_stretch(sums) / sums->space) : out->worst;
+    }
+    for (int32_t c = 0; c < 3 * s->patch->nt; c++) {
+        length += state->cut[c] != 0 && s->patch->twin[c] > c ? s->length[c] : 0.0;
+    }
+    out->stretch = 1.0 + stretch / s->total;
+    out->angle = 1.0 + shear / s->total;
+    out->length = length / s->unit;
+}
+
+bool sl_opt_within(const sl_opt_state *state, const sl_opt_total *total)
+{
+    const sl_optimize_def *def = state->def;
+    return total->stretch <= def->target_stretch && total->angle <= def->target_angle &&
+           total->worst <= def->max_stretch;
+}
+
+/* A loss of 1 is a whole budget: a target that is met weighs less, but something, since energy trades one for the
+ * other. */
+void sl_opt_weigh(sl_opt_state *state)
+{
+    const sl_optimize_def *def = state->def;
+    const double budget[2] = {fmax(def->target_stretch - 1.0, 1e-6), fmax(def->target_angle - 1.0, 1e-6)};
+    sl_opt_total total;
+    sl_opt_totals(state, &total);
+    const bool met[2] = {total.stretch <= def->target_stretch, total.angle <= def->target_angle};
+    for (int k = 0; k < 2; k++) {
+        state->cost[k] = (met[k] && !met[1 - k] ? MET_WEIGHT : 1.0) / budget[k];
+    }
+}
+
+double sl_opt_loss(const sl_opt_state *state, const sl_opt_sums *sums)
+{
+    return (state->cost[0] * sl_opt_stretch(sums) + state->cost[1] * sums->shear) / state->surface->total;
+}
+
+/* Moves chart c of the state to place `to` (below it). */
+static void renumber(sl_opt_state *state, int64_t from, int64_t to)
+{
+    state->chart[to] = state->chart[from];
+    state->chart[from] = (sl_opt_chart){0};
+    for (int32_t t = 0; t < state->chart[to].patch->nt; t++) {
+        state->chart_of[state->chart[to].patch->facet[t]] = (int32_t)to;
+    }
+}
+
+/* Puts a chart in place c and writes its corners' UVs. */
+static void place(sl_opt_state *state, int64_t c, sl_opt_chart *chart)
+{
+    state->chart[c] = *chart;
+    *chart = (sl_opt_chart){0};
+    const sl_opt_chart *now = &state->chart[c];
+    for (int32_t k = 0; k < 3 * now->patch->nt; k++) {
+        memcpy(state->uv + 2 * (int64_t)now->patch->corner[k], now->uv + 2 * (int64_t)now->patch->tri[k],
+               2 * sizeof *state->uv);
+    }
+    for (int32_t t = 0; t < now->patch->nt; t++) {
+        state->chart_of[now->patch->facet[t]] = (int32_t)c;
+    }
+    state->chart[c].stamp = state->next_stamp++;
+}
+
+sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial)
+{
+    const int32_t *twin = state->surface->patch->twin;
+    const sl_status status =
+        sl_reserve((void **)&state->chart, &state->capacity, state->nchart + trial->nto, sizeof *state->chart);
+    if (status != SL_OK) {
+        return status;
+    }
+    for (int32_t k = 0; k < trial->nedge; k++) {
+        state->cut[trial->edge[k]] = state->cut[twin[trial->edge[k]]] = trial->sew ? 0 : 1;
+    }
+    int32_t k = 0;
+    for (int32_t j = 0; j < 2; j++) {
+        if (trial->old[j] < 0) {
+            continue;
+        }
+        sl_opt_chart_clear(&state->chart[trial->old[j]]);
+        if (k < trial->nto) {
+            place(state, trial->old[j], &trial->to[k++]);
+        }
+    }
+    for (; k < trial->nto; k++) {
+        place(state, state->nchart++, &trial->to[k]);
+    }
+    for (int64_t c = state->nchart; c-- > 0;) { /* holes are filled from the end */
+        if (state->chart[c].patch == NULL) {
+            state->nchart--;
+            if (c < state->nchart) {
+                renumber(state, state->nchart, c);
+            }
+        }
+    }
+    sl_opt_trial_clear(trial);
+    return SL_OK;
+}
