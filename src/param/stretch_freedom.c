@@ -69,7 +69,7 @@ static bool find_direction(const sl_stretch_line *line, const double *uv, double
 }
 
 /* Enters line l at its vertices. A third line at a vertex holds it. */
-static bool enter_line(const sl_patch *patch, const sl_stretch_line *line, int32_t l, line_table *t)
+static bool enter_line(const sl_stretch_line *line, int32_t l, line_table *t)
 {
     for (int32_t i = 0; i < line->count; i++) {
         const int32_t v = line->vertex[i];
@@ -85,7 +85,6 @@ static bool enter_line(const sl_patch *patch, const sl_stretch_line *line, int32
             t->held[v] = 1;
         }
     }
-    (void)patch;
     return true;
 }
 
@@ -120,7 +119,7 @@ static sl_status enter_lines(const sl_patch *patch, const sl_stretch_def *def, c
                 return SL_BAD_INPUT;
             }
         }
-        if (line->count < 2 || !find_direction(line, uv, t->direction[l]) || !enter_line(patch, line, l, t)) {
+        if (line->count < 2 || !find_direction(line, uv, t->direction[l]) || !enter_line(line, l, t)) {
             return SL_BAD_INPUT;
         }
         t->fixed[l] = line->fixed;
@@ -148,7 +147,7 @@ static bool cross_lines(const line_table *t, const int32_t at[LINES_AT_VERTEX], 
     }
     unknown[0] = t->unknown[at[0]];
     unknown[1] = t->unknown[at[1]];
-    memcpy(basis, (double[]){-b[0] / sine, -b[1] / sine, a[0] / sine, a[1] / sine}, 4 * sizeof *basis);
+    memcpy(basis, (double[]){b[0] / sine, b[1] / sine, -a[0] / sine, -a[1] / sine}, 4 * sizeof *basis);
     return true;
 }
 

@@ -1,0 +1,371 @@
+/* The minimiser with vertices and lines held, in a workspace, and the sums of its measures. */
+#include "param/stretch.h"
+
+#include "param/distortion.h"
+#include "param/stretch_charts.h"
+#include "param/stretch_internal.h"
+#include "param/tutte.h"
+
+enum { COLUMNS = 9, ROWS = 7, VERTICES = COLUMNS * ROWS };
+
+/* A bumpy rectangle and a flip-free map of it that has straight rows and columns wherever a line is wanted. */
+typedef struct sheet {
+    sl_patch *patch;
+    double uv[2 * VERTICES];
+    int32_t at[ROWS][COLUMNS]; /* the patch's vertex */
+} sheet;
+
+static sheet make_sheet(uint64_t seed)
+{
+    sheet s;
+    test_rng rng = test_rng_seed(seed);
+    double xyz[3 * VERTICES];
+    int32_t tri[6 * VERTICES], nt = 0;
+    for (int i = 0; i < VERTICES; i++) {
+        const double u = (i % COLUMNS) / 4.0 - 1.0 + test_uniform(&rng, -0.05, 0.05);
+        const double v = (i / COLUMNS) / 4.0 - 0.7 + test_uniform(&rng, -0.05, 0.05);
+        chart_bumps(u, v, 1.7, &xyz[3 * i]);
+        const int32_t b = i + 1, c = i + COLUMNS, d = i + COLUMNS + 1;
+        if (i % COLUMNS < COLUMNS - 1 && i / COLUMNS < ROWS - 1) {
+            const bool one = test_index(&rng, 2) == 1;
+            memcpy(&tri[3 * nt++], one ? (int32_t[]){i, b, d} : (int32_t[]){i, b, c}, 3 * sizeof *tri);
+            memcpy(&tri[3 * nt++], one ? (int32_t[]){i, d, c} : (int32_t[]){b, d, c}, 3 * sizeof *tri);
+        }
+    }
+    s.patch = chart_make(VERTICES, xyz, nt, tri);
+    for (int i = 0; i < VERTICES; i++) { /* turned; the vertices in the middle of cells move, too */
+        const int r = i / COLUMNS, c = i % COLUMNS;
+        const bool lined = r == 0 || r == ROWS - 1 || c == 0 || c == COLUMNS - 1 || r == 3 || c == 5;
+        const double size = lined ? 0.0 : 0.06;
+        const double x = 0.31 * c + test_uniform(&rng, -size, size), y = 0.26 * r + test_uniform(&rng, -size, size);
+        for (int32_t v = 0; v < VERTICES; v++) {
+            if (memcmp(&s.patch->xyz[3 * v], &xyz[3 * i], 3 * sizeof *xyz) == 0) {
+                s.at[r][c] = v;
+                s.uv[2 * v] = 0.6 * x - 0.8 * y;
+                s.uv[2 * v + 1] = 0.8 * x + 0.6 * y;
+            }
+        }
+    }
+    assert_int_equal(chart_flips(s.patch, s.uv), 0);
+    return s;
+}
+
+/* Sides, a row and a column that cross. */
+typedef struct sheet_lines {
+    int32_t vertex[6][COLUMNS];
+    sl_stretch_line line[6];
+} sheet_lines;
+
+static void make_lines(const sheet *s, sheet_lines *lines)
+{
+    static const int rows[] = {0, 3, ROWS - 1}, columns[] = {0, 5, COLUMNS - 1};
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < COLUMNS; i++) {
+            lines->vertex[k][i] = s->at[rows[k]][i];
+            lines->vertex[3 + k][i] = i < ROWS ? s->at[i][columns[k]] : -1;
+        }
+        lines->line[k] = (sl_stretch_line){.count = COLUMNS, .vertex = lines->vertex[k]};
+        lines->line[3 + k] = (sl_stretch_line){.count = ROWS, .vertex = lines->vertex[3 + k]};
+    }
+}
+
+static double energy_of(const sl_patch *patch, const double *uv)
+{
+    sl_stretch_rest rest = {0};
+    assert_int_equal(sl_stretch_rest_init(patch, &rest), SL_OK);
+    const double energy = sl_stretch_measure(&rest, patch->tri, 0.0, uv).energy;
+    sl_stretch_rest_clear(&rest);
+    return energy;
+}
+
+/* How far the vertices of a line are from the first one along the normal (x, y). */
+static double off_line(const sl_stretch_line *line, const double *uv, double x, double y)
+{
+    double off = 0.0;
+    const double *a = &uv[2 * line->vertex[0]];
+    for (int32_t i = 0; i < line->count; i++) {
+        const double *p = &uv[2 * line->vertex[i]];
+        off = fmax(off, fabs(x * (p[0] - a[0]) + y * (p[1] - a[1])));
+    }
+    return off;
+}
+
+static sl_stretch_def to_the_end(void)
+{
+    sl_stretch_def def = sl_stretch_default();
+    def.relative_decrease = 1e-14;
+    def.max_iterations = 200;
+    return def;
+}
+
+/* The whole's minimum is the part's, too, when the rim of the part is held where it is. */
+static void a_part_with_its_rim_held_returns_to_the_minimum_of_the_whole(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        sheet s = make_sheet(0x4e1d + seed);
+        test_rng rng = test_rng_seed(seed);
+        double least[2 * VERTICES];
+        uint8_t fixed[VERTICES] = {0};
+        sl_stretch_info info;
+        sl_stretch_def def = to_the_end();
+        assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, NULL), SL_OK);
+        memcpy(least, s.uv, sizeof least);
+        for (int i = 0; i < VERTICES; i++) {
+            const bool inner = i / COLUMNS > 1 && i / COLUMNS < 5 && i % COLUMNS > 2;
+            const int32_t v = s.at[i / COLUMNS][i % COLUMNS];
+            fixed[v] = !inner;
+            for (int k = 0; k < 2 && inner; k++) {
+                s.uv[2 * v + k] += test_uniform(&rng, -0.04, 0.04);
+            }
+        }
+        assert_int_equal(chart_flips(s.patch, s.uv), 0);
+        def.fixed = fixed;
+        assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, &info), SL_OK);
+        assert_true(info.converged && info.energy_before > info.energy_after + 1e-3);
+        for (int32_t v = 0; v < VERTICES; v++) {
+            if (fixed[v] != 0) {
+                assert_memory_equal(&s.uv[2 * v], &least[2 * v], 2 * sizeof *least);
+            }
+        }
+        assert_true(test_near(chart_max_diff(s.uv, least, 2 * VERTICES), 0.0, 1e-5));
+        sl_patch_free(s.patch);
+    }
+}
+
+static void when_all_is_held_nothing_moves(void **state)
+{
+    (void)state;
+    sheet s = make_sheet(0xa11);
+    double copy[2 * VERTICES];
+    uint8_t fixed[VERTICES];
+    sl_stretch_def def = sl_stretch_default();
+    memset(fixed, 1, sizeof fixed);
+    memcpy(copy, s.uv, sizeof copy);
+    def.fixed = fixed;
+    assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, NULL), SL_OK);
+    assert_memory_equal(s.uv, copy, sizeof copy);
+    sl_patch_free(s.patch);
+}
+
+/* Lines and right angles stay; and no way of moving a line or sliding a vertex that is left lowers the energy. */
+static void lines_stay_straight_and_everything_else_finds_its_minimum(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        sheet s = make_sheet(0x11e + seed);
+        sheet_lines lines;
+        sl_stretch_info info;
+        make_lines(&s, &lines);
+        sl_stretch_def def = to_the_end();
+        def.line = lines.line;
+        def.line_count = 6;
+        assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, &info), SL_OK);
+        assert_true(info.converged && info.energy_after < info.energy_before - 0.01);
+        assert_int_equal(chart_flips(s.patch, s.uv), 0);
+        const double least = energy_of(s.patch, s.uv), h = 1e-4;
+        const double along[2] = {0.6, 0.8}; /* of the rows */
+        for (int l = 0; l < 6; l++) {
+            const double x = l < 3 ? -along[1] : along[0], y = l < 3 ? along[0] : along[1];
+            assert_true(test_near(off_line(&lines.line[l], s.uv, x, y), 0.0, 1e-13));
+            for (int side = -1; side <= 1; side += 2) { /* the line along its normal */
+                double moved[2 * VERTICES];
+                memcpy(moved, s.uv, sizeof moved);
+                for (int32_t i = 0; i < lines.line[l].count; i++) {
+                    moved[2 * lines.line[l].vertex[i]] += side * h * x;
+                    moved[2 * lines.line[l].vertex[i] + 1] += side * h * y;
+                }
+                assert_true(energy_of(s.patch, moved) > least);
+            }
+        }
+        for (int i = 0; i < VERTICES; i++) { /* a vertex along its row, its column or anywhere */
+            const int r = i / COLUMNS, c = i % COLUMNS;
+            const bool row = r == 0 || r == ROWS - 1 || r == 3, column = c == 0 || c == COLUMNS - 1 || c == 5;
+            for (int side = -1; side <= 1; side += 2) {
+                const double a = column ? 0.0 : side * h, b = row ? 0.0 : 0.7 * side * h;
+                double *p = &s.uv[2 * s.at[r][c]];
+                const double old[2] = {p[0], p[1]};
+                p[0] += a * along[0] - b * along[1];
+                p[1] += a * along[1] + b * along[0];
+                assert_true(energy_of(s.patch, s.uv) > least || (row && column));
+                memcpy(p, old, sizeof old);
+            }
+        }
+        sl_patch_free(s.patch);
+    }
+}
+
+static void fixed_lines_and_those_with_held_vertices_stay_in_place(void **state)
+{
+    (void)state;
+    sheet s = make_sheet(0xf1e);
+    sheet_lines lines;
+    double start[2 * VERTICES];
+    uint8_t fixed[VERTICES] = {0};
+    make_lines(&s, &lines);
+    memcpy(start, s.uv, sizeof start);
+    lines.line[0].fixed = true;
+    fixed[s.at[3][2]] = 1; /* on the row in the middle */
+    sl_stretch_def def = to_the_end();
+    def.line = lines.line;
+    def.line_count = 6;
+    def.fixed = fixed;
+    assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, NULL), SL_OK);
+    double slid = 0.0, crossed = 0.0;
+    for (int l = 0; l < 2; l++) {
+        for (int i = 0; i < COLUMNS; i++) {
+            const int32_t v = lines.vertex[l][i];
+            const double x = s.uv[2 * v] - start[2 * v], y = s.uv[2 * v + 1] - start[2 * v + 1];
+            assert_true(test_near(-0.8 * x + 0.6 * y, 0.0, 1e-14));
+            slid = fmax(slid, fabs(0.6 * x + 0.8 * y));
+            crossed = i == 5 ? fabs(0.6 * x + 0.8 * y) : crossed;
+        }
+    }
+    assert_true(slid > 0.01 && crossed > 1e-3); /* the others slide, the crossings with the columns' offsets */
+    assert_memory_equal(&s.uv[2 * s.at[3][2]], &start[2 * s.at[3][2]], 2 * sizeof *start);
+    sl_patch_free(s.patch);
+}
+
+static void a_vertex_on_three_lines_stays(void **state)
+{
+    (void)state;
+    sheet s = make_sheet(0x3);
+    sheet_lines lines;
+    double start[2 * VERTICES];
+    make_lines(&s, &lines);
+    for (int32_t v = 0; v < VERTICES; v++) { /* every vertex on the lattice, so that diagonals are straight */
+        for (int i = 0; i < VERTICES; i++) {
+            if (s.at[i / COLUMNS][i % COLUMNS] == v) {
+                const double x = 0.31 * (i % COLUMNS), y = 0.26 * (i / COLUMNS);
+                s.uv[2 * v] = 0.6 * x - 0.8 * y;
+                s.uv[2 * v + 1] = 0.8 * x + 0.6 * y;
+            }
+        }
+    }
+    memcpy(start, s.uv, sizeof start);
+    const int32_t diagonal[3] = {s.at[2][4], s.at[3][5], s.at[4][6]};
+    lines.line[0] = (sl_stretch_line){.count = 3, .vertex = diagonal};
+    sl_stretch_def def = sl_stretch_default();
+    def.line = lines.line;
+    def.line_count = 6;
+    assert_int_equal(sl_stretch_minimise(s.patch, &def, NULL, s.uv, NULL), SL_OK);
+    assert_memory_equal(&s.uv[2 * diagonal[1]], &start[2 * diagonal[1]], 2 * sizeof *start);
+    assert_true(chart_max_diff(&s.uv[2 * diagonal[0]], &start[2 * diagonal[0]], 2) > 1e-4); /* it slides */
+    sl_patch_free(s.patch);
+}
+
+static void lines_that_cannot_be_kept_are_refused(void **state)
+{
+    (void)state;
+    sheet s = make_sheet(0xbad);
+    sheet_lines lines;
+    make_lines(&s, &lines);
+    const int32_t one[1] = {s.at[0][0]}, beyond[2] = {0, VERTICES}, below[2] = {0, -1};
+    const int32_t twice[3] = {s.at[0][0], s.at[0][1], s.at[0][0]}, back[4] = {s.at[0][0], s.at[0][2], s.at[0][1], 0};
+    const int32_t bent[3] = {s.at[0][0], s.at[1][1], s.at[2][4]};
+    const sl_stretch_line bad[] = {{1, one, false},   {2, beyond, false}, {2, below, false},
+                                   {3, twice, false}, {4, back, false},   {3, bent, false}};
+    sl_stretch_def def = sl_stretch_default();
+    sl_stretch *solver = NULL;
+    def.line_count = 1;
+    for (size_t k = 0; k < SL_COUNTOF(bad); k++) {
+        def.line = &bad[k];
+        assert_int_equal(sl_stretch_create(s.patch, s.uv, &def, &solver), SL_BAD_INPUT);
+        assert_null(solver);
+    }
+    const sl_stretch_line same[2] = {lines.line[0], {4, lines.vertex[0] + 2, false}}; /* one on the other */
+    def.line = same;
+    def.line_count = 2;
+    assert_int_equal(sl_stretch_create(s.patch, s.uv, &def, &solver), SL_BAD_INPUT);
+    assert_null(solver);
+    sl_patch_free(s.patch);
+}
+
+/* One workspace for charts of all sizes, the same ones again, with and without held vertices, two solvers at a time. */
+static void results_do_not_depend_on_the_workspace(void **state)
+{
+    (void)state;
+    sl_stretch_workspace *workspace = NULL;
+    assert_int_equal(sl_stretch_workspace_create(&workspace), SL_OK);
+    for (int trial = 0; trial < 12 * test_multiplier(); trial++) {
+        const int kind = trial / 2; /* each twice */
+        sl_patch *patch =
+            kind % 2 == 0 ? chart_tube(6 + kind, 4, 0.1, 0x3a) : chart_hexagon(3, 0.2, chart_bumps, 1.0, 7);
+        const size_t size = 2 * (size_t)patch->nv * sizeof(double);
+        double *uv = malloc(size), *alone = malloc(size), *start = malloc(size);
+        uint8_t *fixed = calloc((size_t)patch->nv, 1);
+        sl_stretch_def def = sl_stretch_default();
+        sl_stretch *first = NULL, *second = NULL;
+        assert_int_equal(sl_tutte(patch, SL_TUTTE_UNIFORM, NULL, start), SL_OK);
+        memcpy(alone, start, size);
+        fixed[trial % patch->nv] = 1;
+        def.fixed = trial % 3 == 0 ? fixed : NULL;
+        assert_int_equal(sl_stretch_minimise(patch, &def, NULL, alone, NULL), SL_OK);
+        def.workspace = workspace;
+        assert_int_equal(sl_stretch_create(patch, start, &def, &first), SL_OK);
+        assert_int_equal(sl_stretch_create(patch, start, &def, &second), SL_OK);
+        for (int i = 0; i < def.max_iterations; i++) {
+            assert_int_equal(sl_stretch_step(first, 1, NULL), SL_OK);
+            assert_int_equal(sl_stretch_step(second, 1, NULL), SL_OK);
+        }
+        assert_memory_equal(sl_stretch_uv(first), alone, size);
+        assert_memory_equal(sl_stretch_uv(second), alone, size);
+        sl_stretch_free(first);
+        sl_stretch_free(second);
+        memcpy(uv, start, size);
+        assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, NULL), SL_OK);
+        assert_memory_equal(uv, alone, size);
+        free(uv);
+        free(alone);
+        free(start);
+        free(fixed);
+        sl_patch_free(patch);
+    }
+    sl_stretch_workspace_free(workspace);
+    sl_stretch_workspace_free(NULL);
+}
+
+static void terms_add_up_to_the_distortion_measures(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 10; seed++) {
+        sl_patch *patch = seed % 2 == 0 ? chart_hexagon(4, 0.25, chart_bumps, 1.4, seed) : chart_tube(7, 3, 0.2, seed);
+        double *uv = malloc(2 * (size_t)patch->nv * sizeof *uv);
+        sl_stretch_terms *term = malloc((size_t)patch->nt * sizeof *term), half[2] = {{0}};
+        sl_distortion d;
+        assert_int_equal(sl_tutte(patch, SL_TUTTE_UNIFORM, NULL, uv), SL_OK);
+        assert_int_equal(sl_distortion_measure_indexed(patch->nt, patch->tri, patch->xyz, uv, &d), SL_OK);
+        const sl_stretch_terms sum = sl_stretch_terms_of(patch, uv, term);
+        assert_true(test_near_rel(sum.area, d.area_3d, 1e-12) && test_near_rel(sum.uv, d.area_uv, 1e-12));
+        assert_true(test_near_rel(sqrt(sum.inverse * sum.uv) / sum.area, d.l2, 1e-11));
+        assert_true(test_near_rel(sum.angle / sum.area, d.angle_mean, 1e-9));
+        for (int32_t t = 0; t < patch->nt; t++) {
+            half[t % 2].inverse += term[t].inverse;
+            half[t % 2].angle += term[t].angle;
+        }
+        assert_true(test_near_rel(half[0].inverse + half[1].inverse, sum.inverse, 1e-12));
+        assert_true(test_near_rel(half[0].angle + half[1].angle, sum.angle, 1e-12));
+        for (int32_t i = 0; i < patch->nv; i++) { /* mirrored */
+            uv[2 * i] = -uv[2 * i];
+        }
+        assert_true(isinf(sl_stretch_terms_of(patch, uv, NULL).inverse));
+        free(uv);
+        free(term);
+        sl_patch_free(patch);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_part_with_its_rim_held_returns_to_the_minimum_of_the_whole),
+        cmocka_unit_test(when_all_is_held_nothing_moves),
+        cmocka_unit_test(lines_stay_straight_and_everything_else_finds_its_minimum),
+        cmocka_unit_test(fixed_lines_and_those_with_held_vertices_stay_in_place),
+        cmocka_unit_test(a_vertex_on_three_lines_stays),
+        cmocka_unit_test(lines_that_cannot_be_kept_are_refused),
+        cmocka_unit_test(results_do_not_depend_on_the_workspace),
+        cmocka_unit_test(terms_add_up_to_the_distortion_measures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
