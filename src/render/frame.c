@@ -101,8 +101,7 @@ void sl_frame_free(sl_frame *f)
     sl_free(f->tri);
     sl_free(f->uv);
     sl_free(f->color);
-    sl_free(f->depth);
-    sl_free(f->seen);
+    sl_free(f->buffers);
     sl_free(f->vertex);
     sl_free(f->kept);
     sl_free(f->span);
@@ -185,17 +184,19 @@ static void draw_lines(void *user, int64_t begin, int64_t end, int32_t chunk)
     sl_frame_draw_lines(task->frame, (int32_t)begin, (int32_t)end, task->rgba);
 }
 
+/* Rows of the visibility buffer begin on cache lines. */
 static bool make_buffers(sl_frame *f, int64_t words)
 {
+    const size_t line = SL_FRAME_LINE * sizeof(float);
     if (words > f->words) {
-        sl_free(f->depth);
-        sl_free(f->seen);
+        sl_free(f->buffers);
         f->words = 0;
-        f->depth = sl_alloc(words, sizeof *f->depth);
-        f->seen = sl_alloc(words, sizeof *f->seen);
-        if (f->depth == NULL || f->seen == NULL) {
+        f->buffers = sl_alloc(2 * words + SL_FRAME_LINE, sizeof(float));
+        if (f->buffers == NULL) {
             return false;
         }
+        f->depth = (float *)(void *)((char *)f->buffers + (line - (uintptr_t)f->buffers % line) % line);
+        f->seen = (int32_t *)(void *)(f->depth + words);
         f->words = words;
     }
     return true;
@@ -208,7 +209,7 @@ sl_status sl_frame_draw(sl_frame *f, const sl_camera *camera, const sl_frame_sty
         return SL_BAD_INPUT;
     }
     f->width = f->height = 0; /* nothing to pick unless all goes well */
-    const int32_t stride = (width + SL_FRAME_PAD - 1) / SL_FRAME_PAD * SL_FRAME_PAD + SL_FRAME_PAD;
+    const int32_t stride = (width + SL_FRAME_PAD + SL_FRAME_LINE - 1) / SL_FRAME_LINE * SL_FRAME_LINE;
     if (!make_buffers(f, (int64_t)stride * height)) {
         return SL_OUT_OF_MEMORY;
     }

@@ -9,6 +9,7 @@
 enum {
     SL_FRAME_BAND = 32, /* rows */
     SL_FRAME_PAD = 8,   /* words at the end of a row that kernels may fill */
+    SL_FRAME_LINE = 16, /* words of a cache line */
     SL_FRAME_LAYERS = 8,
     SL_FRAME_FAR = INT32_MIN, /* x of a vertex that is not on the picture's plane; y says why: */
     SL_FRAME_UNUSABLE = 0,    /* not finite, or too far beside the picture */
@@ -16,6 +17,9 @@ enum {
     SL_FRAME_SMALL = 1 << 14, /* 1/256 pixel: sides for which 32 bits suffice */
     SL_FRAME_CHUNK = 1 << 14, /* triangles */
 };
+
+/* 1/256 pixel: products of two fit 64 bits. */
+#define SL_FRAME_FARTHEST 0x1p28
 
 /* A vertex on the picture: 1/256 pixel, relative to pixel centres. Kernels read the first and the last four words. */
 typedef struct sl_frame_vertex {
@@ -39,6 +43,10 @@ typedef struct sl_frame_lines {
 /* The inner loops, of which there are several that give the same bytes. */
 typedef struct sl_frame_kernels {
     const char *name;
+    /* Least and greatest depth of the vertices [begin, end); what is not finite is left out. */
+    void (*range)(const sl_frame *frame, int64_t begin, int64_t end, double *nearest, double *farthest);
+    /* sl_frame_snap of those vertices, and their cosines. */
+    void (*project)(const sl_frame *frame, int64_t begin, int64_t end);
     /* Lists those of the triangles [begin, end) that may show, ascending, with their bands; returns how many. One entry
      * more may be written to. */
     int32_t (*keep)(const sl_frame *frame, int32_t begin, int32_t end, int32_t *kept, sl_frame_span *span);
@@ -61,6 +69,7 @@ struct sl_frame {
     sl_camera camera;
     sl_frame_style style;
     int32_t width, height, stride, bands;
+    void *buffers;
     int64_t words;           /* room in depth and seen */
     float *depth;            /* keys, 2 where nothing is; rows `stride` apart */
     int32_t *seen;           /* place of the triangle in the band's list, -1 = none */
@@ -86,9 +95,6 @@ extern const sl_frame_kernels sl_frame_kernels_portable, sl_frame_kernels_avx2;
 
 /* Projects the vertices and sorts the triangles into bands. */
 SL_NODISCARD sl_status sl_frame_project(sl_frame *frame, const sl_context *context);
-
-/* Key of a depth. */
-double sl_frame_key(const sl_frame *frame, double z);
 
 /* On the picture? Otherwise vertex->x = SL_FRAME_FAR. cosine is left alone. */
 void sl_frame_snap(const sl_frame *frame, const double eye[3], sl_frame_vertex *vertex);

@@ -26,6 +26,18 @@ LANES_CALL i8 may_show(const sl_frame *f, corners8 *c, const box8 *box)
     return i8_without(c->plain, i8_or(gone, i8_and(one, outside)));
 }
 
+/* The odd ones of eight triangles; returns a bit for each that may show. */
+static inline uint32_t keep_odd(const sl_frame *f, int32_t t, uint32_t odd, sl_frame_span bands[8])
+{
+    uint32_t shown = 0;
+    for (int32_t k = 0; k < 8; k++) {
+        if ((odd >> k & 1) != 0 && sl_frame_keep_odd(f, t + k, &bands[k])) {
+            shown |= 1u << k;
+        }
+    }
+    return shown;
+}
+
 /* Of the triangles t .. t + n - 1; index: of eight. */
 LANES_CALL int32_t keep_eight(const sl_frame *f, int32_t t, int32_t n, const int32_t *index, int32_t *kept,
                               sl_frame_span *span)
@@ -33,19 +45,22 @@ LANES_CALL int32_t keep_eight(const sl_frame *f, int32_t t, int32_t n, const int
     corners8 c;
     box8 box;
     int32_t first[8], last[8], count = 0;
+    sl_frame_span bands[8];
     load_corners(f, index, &c);
     find_box(f, &c, 0, f->height, &box);
-    const uint32_t odd = ~i8_signs(c.plain);
     uint32_t shown = i8_signs(may_show(f, &c, &box));
+    const uint32_t odd = ~i8_signs(c.plain) & ((1u << n) - 1u);
     i8_store(first, i8_down(box.y0, 5));
     i8_store(last, i8_down(box.y1, 5));
+    for (int32_t k = 0; k < 8; k++) {
+        bands[k] = (sl_frame_span){(uint16_t)first[k], (uint16_t)last[k]};
+    }
+    if (odd != 0) {
+        shown |= keep_odd(f, t, odd, bands);
+    }
     for (int32_t k = 0; k < n; k++) {
-        sl_frame_span bands = {(uint16_t)first[k], (uint16_t)last[k]};
-        if ((odd >> k & 1) != 0 && sl_frame_keep_odd(f, t + k, &bands)) {
-            shown |= 1u << k;
-        }
         kept[count] = t + k;
-        span[count] = bands;
+        span[count] = bands[k];
         count += (int32_t)(shown >> k & 1);
     }
     return count;

@@ -42,12 +42,13 @@ typedef struct slope8 {
     f8 dx, dy;     /* from corner 0 to the middle of the tile, pixels */
     f8 weight[3];
     f8 cosine[3];
-    i8 back;
+    i8 back, off; /* masks; off: a corner is not on the picture */
 } slope8;
 
 LANES_CALL void load_slopes(const sl_frame *f, const frame_tile *tile, const int32_t *index, slope8 *s)
 {
     i8 x[3], y[3];
+    s->off = i8_all(0);
     for (int k = 0; k < 3; k++) {
         int64_t at[8];
         i8 word[4];
@@ -57,6 +58,7 @@ LANES_CALL void load_slopes(const sl_frame *f, const frame_tile *tile, const int
         four_words((const char *)f->vertex + offsetof(sl_frame_vertex, x), at, word);
         x[k] = word[0];
         y[k] = word[1];
+        s->off = i8_or(s->off, i8_equal(x[k], i8_all(SL_FRAME_FAR)));
         s->weight[k] = i8_bits(word[2]);
         s->cosine[k] = i8_bits(word[3]);
     }
@@ -175,8 +177,9 @@ LANES_CALL void set_lights(const sl_frame *f, const int32_t *triangle, slope8 *s
     set_plane(s, light, p->word + PAINT_LIGHT);
 }
 
-LANES_CALL void paint_eight(const sl_frame *f, const frame_tile *tile, const int32_t triangle[8],
-                            float (*out)[PAINT_WORDS])
+/* Returns a mask of those with a corner off the picture. */
+LANES_CALL i8 paint_eight(const sl_frame *f, const frame_tile *tile, const int32_t triangle[8],
+                          float (*out)[PAINT_WORDS])
 {
     int32_t index[24], color[8];
     slope8 s;
@@ -201,6 +204,7 @@ LANES_CALL void paint_eight(const sl_frame *f, const frame_tile *tile, const int
     for (int i = 0; i < PAINT_WORDS; i += 4) {
         put_four_words((char *)out + sizeof(float) * (size_t)i, sizeof out[0], p.word + i);
     }
+    return s.off;
 }
 
 /* Prepares the tile's triangles. True: one of them has a corner off the picture. */
@@ -208,21 +212,20 @@ LANES_CALL bool paint_triangles(const sl_frame *f, int32_t band, frame_tile *til
 {
     const int32_t *banded = f->banded + f->band_first[band];
     const uint8_t sheet[4] = {f->style.background[0], f->style.background[1], f->style.background[2], 255};
-    bool odd = false;
+    uint32_t odd = 0;
     for (int32_t i = 1; i < tile->count; i += 8) {
         int32_t triangle[8];
         for (int32_t k = 0; k < 8; k++) {
             triangle[k] = banded[tile->listed[i + k < tile->count ? i + k : i]];
-            odd = odd || sl_frame_is_off(f, triangle[k]);
         }
-        paint_eight(f, tile, triangle, tile->paint + i);
+        odd |= i8_signs(paint_eight(f, tile, triangle, tile->paint + i));
     }
     float *background = tile->paint[0];
     memset(background, 0, sizeof tile->paint[0]);
     background[PAINT_WEIGHT] = 1.0f;
     background[PAINT_LIGHT] = 1.0f / check_middle;
     memcpy(&background[PAINT_COLOR], sheet, sizeof sheet);
-    return odd;
+    return odd != 0;
 }
 
 #endif

@@ -65,19 +65,21 @@ LANES_CALL void fill_columns(const sl_frame *f, const batch *b, int k, int32_t x
         value[e] = i8_add(i8_all(b->value[e][k]), i8_mul(i8_all(b->step_x[e][k]), lane));
         step[e] = i8_all(b->step_y[e][k]);
     }
-    const int32_t rows = b->y1[k] - b->y0[k];
-    const int64_t first = (int64_t)b->y0[k] * f->stride + x;
+    const int64_t stride = f->stride, first = b->y0[k] * stride + x;
+    const f8 top = f8_all(b->depth[k]), down = f8_all(b->depth_y[k]), one = f8_all(1.0f);
     float *depth = f->depth + first;
     int32_t *seen = f->seen + first;
-    for (int32_t r = 0; r <= rows; r++) {
-        const f8 plane = f8_add(f8_all(b->depth[k] + b->depth_y[k] * (float)r), across);
+    f8 r = f8_all(0.0f);
+    for (int32_t rows = b->y1[k] - b->y0[k]; rows >= 0; rows--) {
+        const f8 plane = f8_add(f8_add(top, f8_mul(down, r)), across);
         const f8 key = f8_min(f8_max(plane, nearest), farthest), old = f8_load(depth);
         const i8 outside = i8_down(i8_or(i8_or(value[0], value[1]), value[2]), 31);
-        const i8 nearer = i8_without(f8_less(key, old), outside);
-        f8_store(depth, f8_select(nearer, key, old));
-        i8_store(seen, i8_select(nearer, number, i8_load(seen)));
-        depth += f->stride;
-        seen += f->stride;
+        const f8 inside = i8_bits(i8_or(f8_bits(key), outside)); /* outside: NaN */
+        f8_store(depth, f8_min(inside, old));
+        i8_store(seen, i8_select(f8_less(inside, old), number, i8_load(seen)));
+        depth += stride;
+        seen += stride;
+        r = f8_add(r, one);
         for (int e = 0; e < 3; e++) {
             value[e] = i8_add(value[e], step[e]);
         }
@@ -93,22 +95,32 @@ static inline void clear_rows(const sl_frame *f, int32_t row, int32_t row_end)
     }
 }
 
+/* Vertices of the triangles [i, i + 8) of a list, the last one again where it ends; they are asked for from memory. */
+static inline void load_index(const sl_frame *f, const int32_t *banded, int32_t i, int32_t count, int32_t index[24])
+{
+    for (int32_t k = 0; k < 8; k++) {
+        const int32_t *tri = f->tri + 3 * (int64_t)banded[i + k < count ? i + k : count - 1];
+        for (int c = 0; c < 3; c++) {
+            index[3 * k + c] = tri[c];
+            __builtin_prefetch(f->vertex + tri[c]);
+        }
+    }
+}
+
 LANES_TARGET static void raster(const sl_frame *f, int32_t band, int32_t row, int32_t row_end)
 {
     const int32_t *banded = f->banded + f->band_first[band];
     const int32_t count = (int32_t)(f->band_first[band + 1] - f->band_first[band]);
+    int32_t index[2][24];
     clear_rows(f, row, row_end);
+    if (count > 0) {
+        load_index(f, banded, 0, count, index[0]);
+    }
     for (int32_t i = 0; i < count; i += 8) {
         const int32_t n = count - i < 8 ? count - i : 8;
-        int32_t index[24];
         batch b;
-        for (int32_t k = 0; k < 8; k++) {
-            const int32_t *tri = f->tri + 3 * (int64_t)banded[k < n ? i + k : i];
-            index[3 * k] = tri[0];
-            index[3 * k + 1] = tri[1];
-            index[3 * k + 2] = tri[2];
-        }
-        set_batch(f, index, row, row_end, &b);
+        load_index(f, banded, i + 8, count, index[1 - i / 8 % 2]);
+        set_batch(f, index[i / 8 % 2], row, row_end, &b);
         for (int32_t k = 0; k < n; k++) {
             if ((b.plain >> k & 1) == 0) {
                 sl_frame_raster_odd(f, banded[i + k], i + k, row, row_end);

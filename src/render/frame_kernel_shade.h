@@ -9,37 +9,47 @@
 
 #include <string.h>
 
-/* Numbers the triangles seen in the tile. The frame's slots may hold anything: one counts only when the list agrees.
- * Source: Briggs and Torczon 1993, "An efficient representation for sparse sets". */
+/* Number of a triangle by its place in the band's list; new ones are asked for from memory. The frame's slots may hold
+ * anything: one counts only when the list agrees. Source: Briggs and Torczon 1993, "An efficient representation for
+ * sparse sets". */
+static inline int32_t number_of(const sl_frame *f, int64_t band_first, int32_t place, frame_tile *tile)
+{
+    if (place < 0) {
+        return 0;
+    }
+    int32_t *slot = f->slot + band_first + place, number = *slot;
+    if ((uint32_t)number >= (uint32_t)tile->count || tile->listed[number] != place) {
+        const int64_t t = f->banded[band_first + place];
+        number = tile->count++;
+        tile->listed[number] = place;
+        *slot = number;
+        __builtin_prefetch(f->tri + 3 * t);
+        __builtin_prefetch(f->color + t);
+        if (f->uv != NULL) {
+            __builtin_prefetch(f->uv + 6 * t);
+        }
+    }
+    return number;
+}
+
 LANES_CALL void list_triangles(const sl_frame *f, int32_t band, frame_tile *tile)
 {
-    int32_t *slot = f->slot + f->band_first[band];
-    int32_t count = 1;
+    const int64_t first = f->band_first[band];
+    tile->count = 1;
     tile->listed[0] = -1;
     for (int32_t y = tile->y; y < tile->y_end; y++) {
         const int32_t *seen = f->seen + (int64_t)y * f->stride + tile->x;
         int32_t *number = tile->number[y - tile->y];
         for (int32_t x = 0; x < tile->columns; x += 8) {
-            if (i8_signs(i8_load(seen + x)) == 0xff) {
-                i8_store(number + x, i8_all(0));
+            if (i8_signs(i8_equal(i8_load(seen + x), i8_all(seen[x]))) == 0xff) {
+                i8_store(number + x, i8_all(number_of(f, first, seen[x], tile)));
                 continue;
             }
             for (int32_t k = x; k < x + 8; k++) {
-                const int32_t place = seen[k];
-                int32_t s = 0;
-                if (place >= 0) {
-                    s = slot[place];
-                    if ((uint32_t)s >= (uint32_t)count || tile->listed[s] != place) {
-                        s = count++;
-                        tile->listed[s] = place;
-                        slot[place] = s;
-                    }
-                }
-                number[k] = s;
+                number[k] = number_of(f, first, seen[k], tile);
             }
         }
     }
-    tile->count = count;
 }
 
 LANES_CALL f8 plane_at(const f8 plane[3], f8 dx, f8 dy)

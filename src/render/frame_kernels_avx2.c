@@ -2,10 +2,11 @@
 #if defined(__x86_64__)
 #define SL_LANES_AVX2 1
 #include "render/frame_kernel_keep.h"
+#include "render/frame_kernel_project.h"
 #include "render/frame_kernel_raster.h"
 #include "render/frame_kernel_shade.h"
 
-const sl_frame_kernels sl_frame_kernels_avx2 = {"AVX2", keep, raster, shade};
+const sl_frame_kernels sl_frame_kernels_avx2 = {"AVX2", range, project, keep, raster, shade};
 #else
 typedef int frame_kernels_avx2_is_for_x86_64;
 #endif

@@ -7,6 +7,7 @@
  *     x_less, _equal  all bits set where true; x_select(mask, a, b) is a there and b elsewhere; signs: a bit a lane
  *     f8_bits         the same bits as integers; i8_bits as floats
  *     i8_without      a & ~b; i8_up and i8_down shift, i8_down keeps the sign
+ *     d8_...          eight doubles; round: to nearest, as lrint; points: x, y, z of eight points
  *     i8_tint         four bytes a lane, as tint
  *     four_words      out[i], lane k = word i of those at base + at[k] bytes; put_four_words: to rows a stride apart
  *
@@ -46,9 +47,9 @@ static inline uint32_t tint(uint32_t color, uint32_t power)
 }
 
 #if defined(SL_LANES_AVX2)
-#include "render/frame_lanes_avx2.h"
+#include "render/frame_doubles_avx2.h"
 #else
-#include "render/frame_lanes_portable.h"
+#include "render/frame_doubles_portable.h"
 #endif
 
 #endif

@@ -8,34 +8,30 @@
 
 enum { VERTEX_CHUNK = 1 << 13 };
 
-static const double farthest = 0x1p28;                   /* 1/256 pixel: products of two fit 64 bits */
 static const double key_light[3] = {-0.42, 0.62, -0.66}; /* eye space, towards the light */
-
-double sl_frame_key(const sl_frame *f, double z)
-{
-    return f->key_offset + f->key_scale * (f->camera.perspective ? 1.0 / z : z);
-}
 
 void sl_frame_snap(const sl_frame *f, const double eye[3], sl_frame_vertex *v)
 {
-    double at[2];
+    const sl_camera *camera = &f->camera;
     v->x = SL_FRAME_FAR;
     v->y = SL_FRAME_UNUSABLE;
     v->key = v->weight = 1.0f;
     if (!(fabs(eye[0]) + fabs(eye[1]) + fabs(eye[2]) < DBL_MAX)) {
         return;
     }
-    if (f->camera.perspective && eye[2] < f->camera.near_depth) {
+    if (camera->perspective && eye[2] < camera->near_depth) {
         v->y = SL_FRAME_BEHIND;
         return;
     }
-    sl_camera_project(&f->camera, f->width, f->height, eye, at);
-    const double x = SL_SUBPIXELS * (at[0] - 0.5), y = SL_SUBPIXELS * (at[1] - 0.5);
-    if (fabs(x) < farthest && fabs(y) < farthest) {
+    const double inverse = camera->perspective ? 1.0 / eye[2] : 1.0, scale = f->height * camera->focal * inverse;
+    const double x = SL_SUBPIXELS * (camera->centre[0] * f->width + scale * eye[0] - 0.5);
+    const double y = SL_SUBPIXELS * (camera->centre[1] * f->height - scale * eye[1] - 0.5);
+    if (fabs(x) < SL_FRAME_FARTHEST && fabs(y) < SL_FRAME_FARTHEST) {
+        const double key = f->key_offset + f->key_scale * (camera->perspective ? inverse : eye[2]);
         v->x = (int32_t)lrint(x);
         v->y = (int32_t)lrint(y);
-        v->key = (float)fmin(fmax(sl_frame_key(f, eye[2]), 0.0), 1.0);
-        v->weight = f->camera.perspective ? (float)(1.0 / eye[2]) : 1.0f;
+        v->key = (float)fmin(fmax(key, 0.0), 1.0);
+        v->weight = (float)inverse;
     }
 }
 
@@ -48,17 +44,7 @@ typedef struct project_task {
 static void find_range(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
     const project_task *task = user;
-    const sl_camera *c = &task->frame->camera;
-    double lo = INFINITY, hi = -INFINITY;
-    for (int64_t v = begin; v < end; v++) {
-        const double *p = task->frame->xyz + 3 * v;
-        const double z = (p[0] - c->eye[0]) * c->forward[0] + (p[1] - c->eye[1]) * c->forward[1] +
-                         (p[2] - c->eye[2]) * c->forward[2];
-        lo = z < lo ? z : lo; /* false for NaN */
-        hi = z > hi && z < DBL_MAX ? z : hi;
-    }
-    task->nearest[chunk] = lo;
-    task->farthest[chunk] = hi;
+    task->frame->kernels->range(task->frame, begin, end, &task->nearest[chunk], &task->farthest[chunk]);
 }
 
 static void set_keys(sl_frame *f, double lo, double hi)
@@ -77,14 +63,7 @@ static void project_vertices(void *user, int64_t begin, int64_t end, int32_t chu
 {
     (void)chunk;
     const project_task *task = user;
-    sl_frame *f = task->frame;
-    for (int64_t v = begin; v < end; v++) {
-        double eye[3];
-        sl_camera_to_eye(&f->camera, f->xyz + 3 * v, eye);
-        sl_frame_snap(f, eye, &f->vertex[v]);
-        const float *n = f->normal + 3 * v;
-        f->vertex[v].cosine = n[0] * (float)f->light[0] + n[1] * (float)f->light[1] + n[2] * (float)f->light[2];
-    }
+    task->frame->kernels->project(task->frame, begin, end);
 }
 
 static void count_bands(void *user, int64_t begin, int64_t end, int32_t chunk)
