@@ -8,11 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    PLACING_RETRIES = 6,
-    TURNS = 6, /* what sharing saves is worth nothing where a few long charts lie badly */
-    FEW_CHARTS = 32
-};
+enum { PLACING_RETRIES = 6 };
 static const double PAGE_SHRINKAGE = 1.0 - 0x1p-12; /* half a texel of 2048: the margins lose a 4096th */
 
 sl_atlas_def sl_atlas_default(void)
@@ -124,9 +120,7 @@ static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_
         goto cleanup;
     }
     SL_TRY(pack_input_init(atlas, &input));
-    sl_pack_def pack = def->pack;
-    pack.turns = seg->sharing.copies > 0 && input.count <= FEW_CHARTS && pack.turns < TURNS ? TURNS : pack.turns;
-    SL_TRY(sl_pack(input.count, input.chart, &pack, context, packed, &atlas->pack));
+    SL_TRY(sl_pack(input.count, input.chart, &def->pack, context, packed, &atlas->pack));
     spread_placements(seg, packed, atlas->placement);
 cleanup:
     sl_free(packed);
@@ -292,7 +286,7 @@ static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl
 static bool only_texels_meet(const sl_atlas_check *check)
 {
     return !check->passed && check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
-           check->unlike == 0;
+           check->unlike == 0 && check->proven;
 }
 
 /* Writes the UVs and judges them; in the rare cases that need it, with all digits (triangles smaller than the quantum)
