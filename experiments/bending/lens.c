@@ -1,4 +1,4 @@
-#include "bend.h"
+#include "lens.h"
 
 #include <math.h>
 
@@ -57,7 +57,7 @@ static void add_side(box_grid *g, int axis, bool high)
     }
 }
 
-sl_status bend_lens(bend_model *out)
+sl_status lens_make(bend_model *out)
 {
     sl_status status = SL_OK;
     const int32_t lattice = (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
@@ -76,6 +76,7 @@ sl_status bend_lens(bend_model *out)
         add_side(&g, axis, true);
     }
     out->polygons = (sl_polygons){g.vertices, g.facets, NULL, out->first, out->index};
+    SL_TRY(bend_begin(out));
 cleanup:
     sl_free(g.number);
     return status;

@@ -1,5 +1,6 @@
 /* Sec. 3.2: PCA and planes find the equator of straight objects only. Straight objects, bent more and more. */
-#include "bend.h"
+#include "lens.h"
+#include "support/main.h"
 #include "support/pictures.h"
 #include "support/turning.h"
 
@@ -147,7 +148,7 @@ static sl_status bend_model_all(exp_run *run, exp_page *page, int m, results *r)
     sl_status status = SL_OK;
     bend_model model = {0};
     const double step = run->quick ? 90.0 : 30.0;
-    SL_TRY(bend_load(run, models[m].name, &model));
+    SL_TRY(m == 0 ? lens_make(&model) : bend_load(run, models[m].name, &model));
     exp_page_html(page, "<h3>%s</h3>\n<div class=\"grid cuts\">\n", models[m].title);
     for (int32_t a = 0; a < r->angles; a++) {
         const bool shown = a == 0 || fabs(step * a - 270.0) < 1.0;

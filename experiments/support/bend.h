@@ -3,24 +3,23 @@
 #ifndef SL_EXPERIMENTS_BEND_H
 #define SL_EXPERIMENTS_BEND_H
 
-#include "support/main.h"
+#include "support/run.h"
 
 /* A model in its own principal axes: x along its length, z through its thickness. */
 typedef struct bend_model {
     exp_mesh mesh;          /* of a generated one */
-    int32_t *first, *index; /* of the lens */
+    int32_t *first, *index; /* owned, of one that is not generated; else NULL */
     double *rest;           /* nv x 3 */
     double *xyz;            /* nv x 3: bent */
     sl_polygons polygons;   /* with xyz */
     double length;
 } bend_model;
 
-/* "lens", an ellipsoid of 3 : 1 : 0.45 under a grid of quads, or a generated mesh. SL_BAD_INPUT (no such generator),
- * SL_OUT_OF_MEMORY. */
+/* A generated mesh. SL_BAD_INPUT (no such generator), SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status bend_load(exp_run *run, const char *name, bend_model *out);
 
-/* lens.c: rest and polygons of the lens. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status bend_lens(bend_model *out);
+/* Completes a model whose rest, polygons and arrays are there. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status bend_begin(bend_model *model);
 
 /* Rolls the model up about the y axis: its length becomes an arc of that many degrees, its thickness stays. */
 void bend_by(bend_model *model, double degrees);

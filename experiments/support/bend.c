@@ -1,4 +1,4 @@
-#include "bend.h"
+#include "support/bend.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -68,19 +68,22 @@ static sl_status load_generated(exp_run *run, const char *name, bend_model *out)
     return out->rest != NULL ? SL_OK : SL_OUT_OF_MEMORY;
 }
 
+sl_status bend_begin(bend_model *model)
+{
+    model->xyz = sl_alloc(3 * (int64_t)model->polygons.nv, sizeof *model->xyz);
+    if (model->xyz == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    model->polygons.xyz = model->xyz;
+    order_axes(model);
+    bend_by(model, 0.0);
+    return SL_OK;
+}
+
 sl_status bend_load(exp_run *run, const char *name, bend_model *out)
 {
-    sl_status status = SL_OK;
-    SL_TRY(strcmp(name, "lens") == 0 ? bend_lens(out) : load_generated(run, name, out));
-    out->xyz = sl_alloc(3 * (int64_t)out->polygons.nv, sizeof *out->xyz);
-    if (out->xyz == NULL) {
-        SL_TRY(SL_OUT_OF_MEMORY);
-    }
-    out->polygons.xyz = out->xyz;
-    order_axes(out);
-    bend_by(out, 0.0);
-cleanup:
-    return status;
+    const sl_status status = load_generated(run, name, out);
+    return status == SL_OK ? bend_begin(out) : status;
 }
 
 void bend_by(bend_model *model, double degrees)
