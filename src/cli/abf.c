@@ -10,14 +10,17 @@
 
 static const cli_verb verb = {
     .name = "abf",
-    .usage = "seamlab abf MESH [--step] [--iterations N] [--trace FILE.json] [--report FILE.html] [constraints]",
+    .usage = "seamlab abf MESH [-o OUT] [--step] [--iterations N] [--trace FILE.json] [--report FILE.html]\n"
+             "            [constraints]",
     .summary = "Flattens one chart by ABF++ and shows every Newton iteration: energy, gradient, residuals of the\n"
                "constraints, sizes of the matrices, and the matrices of a small chart (reports/design/abf-by-hand.md\n"
                "follows one with pencil and paper). Constraints (paper, Sec. 4.2) name vertices by input number,\n"
-               "counted from 0; V/F is the copy of V at facet F where seams give it several. Exit 4: they\n"
-               "contradict one another, or the solver did not converge.",
+               "counted from 0; V/F is the copy of V at facet F where seams give it several. Targets that are not\n"
+               "reached in one go are approached step by step, unless --step or --iterations is given, and what is\n"
+               "left is told. Exit 4: they contradict one another or are not reached, or the solver did not converge.",
     .examples = "  seamlab abf chart.obj --step\n"
                 "  seamlab abf chart.obj --rectangle 1,3,5,7 --report steps.html\n"
+                "  seamlab abf chart.obj --straight 3,9 -o straight.obj\n"
                 "  seamlab abf chart.obj --angle 12=90 --straight 3,40,41,9 --trace steps.json\n"
                 "  seamlab abf model.obj --chart 2 --wheel ratio --energy unweighted\n"
                 "  seamlab abf model.obj --seams edges.csv --chart 0 --pin 4=0,0 --pin 9=1,0\n",
@@ -25,27 +28,37 @@ static const cli_verb verb = {
     .max_files = 1,
 };
 
+/* How it ended. */
+typedef struct outcome {
+    bool converged, quit; /* quit: stopped by hand before */
+} outcome;
+
 typedef struct abf_options {
     cli_run run;
     abf_source source;
     abf_asked asked;
     bool step;
     int32_t energy, wheel, newton;
-    const char *trace, *report;
+    int32_t iterations; /* -1 = not said */
+    const char *trace, *report, *output;
     sl_abf_def def;
 } abf_options;
 
-enum { OWN_OPTIONS = 15, MOST_ITERATIONS = 1000 };
+enum { OWN_OPTIONS = 17, MOST_ITERATIONS = 1000 };
+
+static const char end_of_input[] = {4, 0}; /* Ctrl-D, as it comes raw and as it comes from a line begun before */
 
 static void option_table(abf_options *o, cli_option *table)
 {
     const cli_option own[OWN_OPTIONS] = {
         {"step", 0, CLI_FLAG, &o->step, 0, 0, NULL, NULL, "an iteration a key: q quits, r runs to the end"},
-        {"iterations", 0, CLI_INT, &o->def.max_iterations, 0, MOST_ITERATIONS, NULL, "N", "at most (40)"},
+        {"iterations", 0, CLI_INT, &o->iterations, 0, MOST_ITERATIONS, NULL, "N", "at most, from the start (40)"},
+        {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY: the mesh with this chart's UVs"},
         {"trace", 0, CLI_TEXT, &o->trace, 0, 0, NULL, "FILE", "JSON of all iterations: angles, residuals, layouts"},
         {"report", 0, CLI_TEXT, &o->report, 0, 0, NULL, "FILE", "HTML: each layout, convergence, the computation"},
         {"angle", 0, CLI_LIST, &o->asked.angle, 0, 0, NULL, "V=DEG", "angle of the chart at border vertex V"},
-        {"straight", 0, CLI_LIST, &o->asked.straight, 0, 0, NULL, "V1,V2,...", "a path of edges becomes straight"},
+        {"straight", 0, CLI_LIST, &o->asked.straight, 0, 0, NULL, "V1,V2,...",
+         "a path of edges becomes straight; two vertices: the shortest path"},
         {"right-angle", 0, CLI_LIST, &o->asked.right, 0, 0, NULL, "V", "lines and border meet at right angles"},
         {"rectangle", 0, CLI_LIST, &o->asked.rectangle, 0, 0, NULL, "A,B,C,D", "the border, by its four corners"},
         {"pin", 0, CLI_LIST, &o->asked.pin, 0, 0, NULL, "V=U,V", "where a vertex lies: once or twice (similarity)"},
@@ -55,6 +68,7 @@ static void option_table(abf_options *o, cli_option *table)
         {"tolerance", 0, CLI_REAL, &o->def.gradient_tolerance, 1e-15, 1.0, NULL, "G", "on |grad| (1e-6)"},
         {"chart", 0, CLI_INT, &o->source.chart, 0, 2147483647, NULL, "N", "of a mesh that is no disk (the largest)"},
         {"seams", 0, CLI_TEXT, &o->source.seams, 0, 0, NULL, "FILE", "cut here: a line of two vertices an edge"},
+        {"strict", 0, CLI_FLAG, &o->run.strict, 0, 0, NULL, NULL, "exit 4 also when stopped by q, not converged"},
     };
     memcpy(table, own, sizeof own);
     cli_common_options(&o->run, table + OWN_OPTIONS);
@@ -77,7 +91,7 @@ static char read_key(void)
         key = 'q';
     }
     tcsetattr(STDIN_FILENO, TCSANOW, &cooked);
-    return key;
+    return key == end_of_input[0] || key == end_of_input[1] ? 'q' : key;
 }
 
 static void show_matrices(const sl_abf *solver, bool schur)
@@ -93,7 +107,8 @@ static void show_matrices(const sl_abf *solver, bool schur)
     putchar('\n');
 }
 
-static sl_status iterate(abf_options *o, abf_trace *trace, sl_abf *solver)
+/* An iteration a key; *quit = stopped by hand. */
+static sl_status iterate(abf_options *o, abf_trace *trace, sl_abf *solver, bool *quit)
 {
     const bool talk = !o->run.json && !o->run.quiet;
     const bool small = talk && trace->pick->patch->nt <= ABF_MATRIX_TRIANGLES;
@@ -111,6 +126,7 @@ static sl_status iterate(abf_options *o, abf_trace *trace, sl_abf *solver)
     while (status == SL_OK && info->iterations < o->def.max_iterations && !info->converged && !info->stalled) {
         const char key = wait ? read_key() : 'r';
         if (key == 'q') {
+            *quit = true;
             break;
         }
         wait = wait && key != 'r';
@@ -151,42 +167,113 @@ static sl_status deliver(abf_options *o, const abf_trace *trace, sl_diag *diag)
     if (o->report != NULL) {
         SL_TRY(abf_report_write(trace, o->report, diag));
     }
+    if (o->output != NULL) {
+        SL_TRY(abf_mesh_write(trace, o->output, diag));
+    }
 cleanup:
     return status;
 }
 
-static sl_status solve(abf_options *o, const abf_pick *pick, const abf_constraints *constraints, bool *converged,
+/* The solver by itself, which takes the targets as they are. */
+static sl_status step_by_step(abf_options *o, abf_trace *trace, outcome *out)
+{
+    sl_status status = SL_OK;
+    sl_abf *solver = NULL;
+    SL_TRY(sl_abf_create(trace->pick->patch, &o->def, &solver));
+    SL_TRY(iterate(o, trace, solver, &out->quit));
+    SL_TRY(abf_trace_close(trace, solver));
+    out->converged = sl_abf_info_of(solver)->converged;
+cleanup:
+    sl_abf_free(solver);
+    return status;
+}
+
+/* What looks on while a chart is solved for. */
+typedef struct watcher {
+    abf_options *o;
+    abf_trace *trace;
+    bool held; /* what comes now is no step, but what is held after all */
+    sl_status status;
+} watcher;
+
+static bool note_frame(void *user, const sl_abf *solver)
+{
+    watcher *w = user;
+    const bool talk = !w->o->run.json && !w->o->run.quiet;
+    w->status = abf_trace_add(w->trace, solver, &w->o->run.context);
+    if (w->status == SL_OK && w->held) {
+        abf_trace_hold(w->trace);
+    }
+    if (w->status == SL_OK && talk) {
+        if (w->trace->count == 1) {
+            abf_print_head(w->trace);
+        }
+        abf_print_frame(w->trace, w->trace->count - 1);
+    }
+    return w->status == SL_OK;
+}
+
+/* The chart in hand: homotopy where the targets are hard, and a valid state held. */
+static sl_status solve_chart(abf_options *o, abf_trace *trace, outcome *out)
+{
+    sl_abf_chart *chart = NULL;
+    watcher w = {o, trace, false, SL_OK};
+    sl_abf_def def = o->def;
+    def.watch = note_frame;
+    def.watch_user = &w;
+    o->run.bar = false; /* the lines say how it goes */
+    sl_status status = sl_abf_chart_create(trace->pick->patch, &def, &o->run.context, &chart);
+    status = status == SL_CANCELLED && w.status != SL_OK ? w.status : status;
+    SL_TRY(status);
+    trace->chart = *sl_abf_chart_info_of(chart);
+    const size_t size = 3 * (size_t)trace->pick->patch->nt * sizeof(double);
+    if (trace->count == 0 || memcmp(abf_trace_last(trace)->alpha, sl_abf_chart_angles(chart), size) != 0) {
+        w.held = trace->count > 0; /* the last try came to nothing */
+        SL_TRY(note_frame(&w, sl_abf_chart_solver(chart)) ? SL_OK : w.status);
+    }
+    SL_TRY(abf_trace_close(trace, sl_abf_chart_solver(chart)));
+    out->converged = trace->chart.converged && trace->chart.reached == 1.0;
+cleanup:
+    sl_abf_chart_free(chart);
+    return status;
+}
+
+/* Pins that cannot be, before anything is solved: on a layout where no two vertices are in one place. */
+static sl_status check_pins(const sl_patch *patch, const abf_constraints *constraints, sl_diag *diag)
+{
+    double *probe = sl_calloc(2 * (int64_t)patch->nv, sizeof *probe);
+    if (probe == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t v = 0; v < patch->nv; v++) {
+        probe[2 * (int64_t)v] = v;
+    }
+    const sl_status status = sl_pins_apply(patch, constraints->pins, constraints->pin, probe, diag);
+    sl_free(probe);
+    return status;
+}
+
+static sl_status solve(abf_options *o, const abf_pick *pick, const abf_constraints *constraints, outcome *out,
                        sl_diag *diag)
 {
     const sl_patch *patch = pick->patch;
     sl_status status = SL_OK;
     sl_sector_table table = {0};
-    sl_abf *solver = NULL;
-    double *phi = sl_alloc(6 * (int64_t)patch->nt, sizeof *phi), *probe = NULL;
+    double *phi = sl_alloc(6 * (int64_t)patch->nt, sizeof *phi);
     abf_trace trace = {.file = o->source.file, .pick = pick, .constraints = constraints, .table = &table};
     SL_TRY(phi != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     SL_TRY(sl_constraints_compile(patch, constraints->count, constraints->item, pick->name, &table, diag));
-    probe = sl_calloc(2 * (int64_t)patch->nv, sizeof *probe);
-    SL_TRY(probe != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    for (int32_t v = 0; v < patch->nv; v++) {
-        probe[2 * (int64_t)v] = v; /* no two at one place: what is wrong with the pins alone */
-    }
-    SL_TRY(sl_pins_apply(patch, constraints->pins, constraints->pin, probe, diag));
+    SL_TRY(check_pins(patch, constraints, diag));
     o->def.sectors = &table.view;
     trace.def = o->def;
-    SL_TRY(sl_abf_create(patch, &o->def, &solver));
-    sl_abf_targets(patch, &o->def, phi, phi + 3 * (int64_t)patch->nt);
     trace.phi = phi;
     trace.weight = phi + 3 * (int64_t)patch->nt;
-    SL_TRY(iterate(o, &trace, solver));
-    SL_TRY(abf_trace_close(&trace, solver));
+    sl_abf_targets(patch, &o->def, phi, phi + 3 * (int64_t)patch->nt);
+    SL_TRY(o->step || o->iterations >= 0 ? step_by_step(o, &trace, out) : solve_chart(o, &trace, out));
     SL_TRY(deliver(o, &trace, diag));
-    *converged = sl_abf_info_of(solver)->converged;
 cleanup:
     abf_trace_clear(&trace);
-    sl_abf_free(solver);
     sl_sectors_clear(&table);
-    sl_free(probe);
     sl_free(phi);
     return status;
 }
@@ -196,14 +283,15 @@ static int run(abf_options *o)
     abf_pick pick = {0};
     abf_constraints constraints = {0};
     sl_diag diag = sl_diag_none();
-    bool converged = false;
+    outcome out = {0};
     int code = abf_pick_chart(&o->run, &o->source, &pick);
     if (code == CLI_DONE) {
         code = abf_constraints_read(&o->run, &pick, &o->asked, &constraints);
     }
     if (code == CLI_DONE) {
-        code = cli_fail(&o->run, solve(o, &pick, &constraints, &converged, &diag), &diag);
-        code = code == CLI_DONE && !converged ? CLI_INFEASIBLE : code;
+        code = cli_fail(&o->run, solve(o, &pick, &constraints, &out, &diag), &diag);
+        const bool fine = out.converged || (out.quit && !o->run.strict);
+        code = code == CLI_DONE && !fine ? CLI_INFEASIBLE : code;
     }
     abf_constraints_clear(&constraints);
     abf_pick_clear(&pick);
@@ -212,7 +300,7 @@ static int run(abf_options *o)
 
 int cli_abf(int argc, char **argv)
 {
-    abf_options o = {.run = {.verb = verb.name}, .source = {.chart = -1}, .def = sl_abf_default()};
+    abf_options o = {.run = {.verb = verb.name}, .source = {.chart = -1}, .iterations = -1, .def = sl_abf_default()};
     cli_option options[OWN_OPTIONS + CLI_COMMON_OPTIONS];
     int32_t files = 0;
     option_table(&o, options);
@@ -220,6 +308,11 @@ int cli_abf(int argc, char **argv)
     if (code >= 0) {
         return code;
     }
+    if (o.output != NULL && !sl_meshfile_can_hold_uv(o.output)) {
+        fprintf(stderr, "seamlab abf: the output's format cannot hold UVs; use .obj or .ply\n");
+        return CLI_USAGE;
+    }
+    o.def.max_iterations = o.iterations >= 0 ? o.iterations : o.def.max_iterations;
     o.def.energy = (sl_abf_energy)o.energy;
     o.def.wheel = (sl_abf_wheel)o.wheel;
     o.def.newton = (sl_abf_newton)o.newton;

@@ -16,7 +16,7 @@ typedef struct reader {
     const abf_pick *pick;
     const char *option, *text, *at, *end;
     abf_constraints *out;
-    int32_t used, room; /* of out->vertex */
+    int64_t used, room; /* of out->vertex */
 } reader;
 
 static int refuse(const reader *r, const char *what)
@@ -153,6 +153,23 @@ static void begin(reader *r, const char *option, const char *text)
     r->end = text + strlen(text);
 }
 
+/* Two vertices of a path: the shortest way between them. */
+static int complete_path(reader *r, int32_t *count)
+{
+    int32_t *vertex = &r->out->vertex[r->used];
+    char list[160] = "";
+    size_t at = 0;
+    const sl_status status = abf_shortest_path(r->pick->patch, vertex[0], vertex[1], vertex, count);
+    for (int32_t k = 0; status == SL_OK && k < *count && at + 16 < sizeof list; k++) {
+        at += (size_t)snprintf(&list[at], sizeof list - at, k > 0 ? ",%d" : "%d", r->pick->name[vertex[k]]);
+    }
+    if (status == SL_OK && *count > 2) {
+        cli_note(r->run, "--%s %s: the shortest way has %d vertices, %s%s", r->option, r->text, *count, list,
+                 at + 16 < sizeof list ? "" : "...");
+    }
+    return status == SL_OK ? -1 : cli_fail(r->run, status, NULL);
+}
+
 static int read_item(reader *r, sl_constraint_kind kind, const char *option, const char *text)
 {
     sl_constraint *item = &r->out->item[r->out->count];
@@ -171,6 +188,9 @@ static int read_item(reader *r, sl_constraint_kind kind, const char *option, con
     }
     if (code < 0 && (kind == SL_CONSTRAINT_ANGLE || kind == SL_CONSTRAINT_RIGHT) && count != 1) {
         code = refuse(r, "one vertex is expected");
+    }
+    if (code < 0 && kind == SL_CONSTRAINT_STRAIGHT && count == 2) {
+        code = complete_path(r, &count);
     }
     if (code < 0 && kind == SL_CONSTRAINT_STRAIGHT && count < 3) {
         code = refuse(r, "a path that can be bent has at least three vertices");
@@ -196,14 +216,16 @@ static int read_pin(reader *r, const char *text)
     return code < 0 && r->at != r->end ? refuse(r, "cannot be read to its end") : code;
 }
 
-static int32_t vertices_in(const cli_list *list)
+/* Room for the vertices of all items; two can become a path across the chart. */
+static int64_t vertices_in(const cli_list *list, int32_t nv)
 {
-    int32_t n = 0;
+    int64_t n = 0;
     for (int32_t k = 0; k < list->count; k++) {
-        n += 1;
+        int32_t commas = 0;
         for (const char *c = list->item[k]; *c != '\0'; c++) {
-            n += *c == ',';
+            commas += *c == ',';
         }
+        n += commas == 1 ? 2 + (int64_t)nv : 1 + (int64_t)commas;
     }
     return n;
 }
@@ -224,7 +246,7 @@ int abf_constraints_read(cli_run *run, const abf_pick *pick, const abf_asked *as
     *out = (abf_constraints){0};
     for (size_t g = 0; g < SL_COUNTOF(group); g++) {
         items += group[g].list->count;
-        r.room += vertices_in(group[g].list);
+        r.room += vertices_in(group[g].list, pick->patch->nv);
     }
     out->item = sl_calloc(items, sizeof *out->item);
     out->text = sl_calloc(items, sizeof *out->text);

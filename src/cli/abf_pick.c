@@ -10,6 +10,7 @@ void abf_pick_clear(abf_pick *pick)
     sl_free(pick->name);
     sl_mesh_free(pick->mesh);
     sl_atlas_free(pick->atlas);
+    sl_meshfile_free(pick->file);
     *pick = (abf_pick){0};
 }
 
@@ -49,9 +50,10 @@ static sl_status try_whole(abf_pick *pick, const sl_polygons *polygons, bool *ta
         pick->charts = 1;
     }
     if (!*taken) {
-        const int32_t facets = pick->facets;
-        abf_pick_clear(pick);
-        pick->facets = facets;
+        sl_patch_free(pick->patch);
+        sl_free(pick->name);
+        sl_mesh_free(pick->mesh);
+        *pick = (abf_pick){.facets = pick->facets, .file = pick->file};
     }
 cleanup:
     sl_triangulation_free(triangulation);
@@ -106,15 +108,14 @@ cleanup:
 int abf_pick_chart(cli_run *run, const abf_source *source, abf_pick *pick)
 {
     sl_diag diag = sl_diag_none();
-    sl_meshfile *file = NULL;
     sl_polygons polygons;
     bool taken = false;
     sl_status status = SL_OK;
-    const int code = cli_read_mesh(run, source->file, &file);
+    const int code = cli_read_mesh(run, source->file, &pick->file);
     if (code != CLI_DONE) {
         return code;
     }
-    sl_meshfile_polygons(file, &polygons);
+    sl_meshfile_polygons(pick->file, &polygons);
     snprintf(diag.file, sizeof diag.file, "%s", source->file);
     if (source->seams == NULL && source->chart <= 0) {
         SL_TRY(try_whole(pick, &polygons, &taken, &diag));
@@ -124,7 +125,6 @@ int abf_pick_chart(cli_run *run, const abf_source *source, abf_pick *pick)
         SL_TRY(cut_and_take(run, source, &polygons, pick, &diag));
     }
 cleanup:
-    sl_meshfile_free(file);
     if (status == SL_IO) {
         return cli_fail(run, status, &diag) == CLI_DONE ? CLI_DONE : CLI_BAD_INPUT;
     }

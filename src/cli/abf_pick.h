@@ -19,7 +19,8 @@ typedef struct abf_pick {
     int32_t *name; /* nv: the input vertex of a patch vertex */
     int32_t chart, charts;
     int32_t facets; /* of the whole mesh */
-    sl_mesh *mesh;  /* owned unless `atlas` holds it */
+    sl_meshfile *file;
+    sl_mesh *mesh; /* NULL where `atlas` holds it */
     sl_atlas *atlas;
 } abf_pick;
 
@@ -44,8 +45,13 @@ typedef struct abf_constraints {
 } abf_constraints;
 
 /* A vertex is an input number V, or V/F where the chart has several copies of it: the one at facet F. Along a path the
- * copies follow from the edges. Returns the exit code. */
+ * copies follow from the edges; a path of two vertices is the shortest way between them, and a note tells it. Returns
+ * the exit code. */
 int abf_constraints_read(cli_run *run, const abf_pick *pick, const abf_asked *asked, abf_constraints *out);
+
+/* The shortest way along edges between two vertices of a patch, both included: vertex has room for nv of them. */
+SL_NODISCARD sl_status abf_shortest_path(const sl_patch *patch, int32_t from, int32_t to, int32_t *vertex,
+                                         int32_t *count);
 
 void abf_constraints_clear(abf_constraints *constraints);
 

@@ -30,7 +30,12 @@ void abf_print_frame(const abf_trace *t, int32_t index)
     const abf_frame *f = &t->frame[index];
     const sl_abf_info *i = &f->info;
     char step[16] = "-", flipped[16] = "-";
-    if (index > 0) {
+    if (f->held) {
+        printf("     back to the last valid state:\n");
+    } else if (i->iterations == 0 && f->solve > 1) {
+        printf("     solve %d, for targets at most %.4f degrees from those asked for:\n", f->solve, f->aside * degrees);
+    }
+    if (i->iterations > 0) {
         snprintf(step, sizeof step, "%.4f", i->step);
     }
     if (f->uv != NULL) {
@@ -73,11 +78,16 @@ void abf_print_end(const abf_trace *t)
 {
     const abf_frame *f = abf_trace_last(t);
     const sl_distortion *d = &t->distortion;
-    printf("\n%s after %d iteration%s%s\n",
-           f->info.converged ? "converged"
-           : f->info.stalled ? "stalled: no step keeps the angles positive"
-                             : "not converged",
-           f->info.iterations, f->info.iterations == 1 ? "" : "s", f->info.floor ? ", at the rounding floor" : "");
+    const int32_t iterations = t->chart.solves > 0 ? t->chart.iterations : f->info.iterations;
+    printf("\n%s after %d iteration%s%s\n", abf_trace_verdict(t), iterations, iterations == 1 ? "" : "s",
+           f->info.floor ? ", at the rounding floor" : "");
+    if (t->chart.solves > 1) {
+        printf("%d solves: the targets were approached from the chart without constraints\n", t->chart.solves);
+    }
+    if (abf_trace_short(t)) {
+        printf("reached %.2f %% of the way; %.4f degrees are left at the worst vertex\n", 100.0 * t->chart.reached,
+               t->chart.distance * degrees);
+    }
     if (f->uv == NULL) {
         printf("these angles cannot be laid out\n");
         return;

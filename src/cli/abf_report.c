@@ -145,12 +145,10 @@ static void write_iterations(sl_writer *w, const abf_trace *t)
     sl_writer_text(w, "</table></div>\n");
     const sl_abf_info *last = &abf_trace_last(t)->info;
     sl_writer_format(w,
-                     "<p>%s. Layout: stretch L2 %.6f, mean &sigma;<sub>1</sub>/&sigma;<sub>2</sub> %.6f, largest "
-                     "%.4f.</p>\n",
-                     last->converged ? "Converged"
-                     : last->stalled ? "Stalled: no step keeps the angles positive"
-                                     : "Not converged",
-                     t->distortion.l2, t->distortion.angle_mean, t->distortion.angle_max);
+                     "<p>How it ended: %s%s. Layout: stretch L2 %.6f, mean &sigma;<sub>1</sub>/&sigma;<sub>2</sub> "
+                     "%.6f, largest %.4f.</p>\n",
+                     abf_trace_verdict(t), last->floor ? ", at the rounding floor" : "", t->distortion.l2,
+                     t->distortion.angle_mean, t->distortion.angle_max);
 }
 
 static void write_steps(sl_writer *w)

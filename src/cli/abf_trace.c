@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "param/reconstruct.h"
 
+#include <math.h>
 #include <string.h>
 
 static const char *const energy_name[] = {"weighted", "unweighted"};
@@ -23,6 +24,17 @@ const char *abf_wheel_name(sl_abf_wheel wheel)
 const char *abf_newton_name(sl_abf_newton newton)
 {
     return newton_name[newton];
+}
+
+const char *abf_trace_verdict(const abf_trace *trace)
+{
+    const sl_abf_info *last = &abf_trace_last(trace)->info;
+    if (abf_trace_short(trace)) {
+        return trace->chart.valid ? "stopped short of the targets" : "no valid chart was found";
+    }
+    return last->converged ? "converged"
+           : last->stalled ? "stalled: no step keeps the angles positive"
+                           : "not converged";
 }
 
 static void frame_clear(abf_frame *frame)
@@ -75,13 +87,17 @@ sl_status abf_trace_add(abf_trace *trace, const sl_abf *solver, const sl_context
         return status;
     }
     abf_frame *frame = &trace->frame[trace->count];
-    *frame = (abf_frame){.info = *sl_abf_info_of(solver)};
+    *frame = (abf_frame){.info = *sl_abf_info_of(solver), .solve = trace->count > 0 ? abf_trace_last(trace)->solve : 0};
+    frame->solve += frame->info.iterations == 0;
     trace->sizes = sl_abf_sizes_of(solver);
     const int64_t rows = (int64_t)patch->nt + trace->sizes.sectors + trace->sizes.wheels;
     frame->alpha = sl_copy(sl_abf_angles(solver), 3 * (int64_t)patch->nt, sizeof *frame->alpha);
     frame->residual = sl_alloc(rows, sizeof *frame->residual);
     SL_TRY(frame->alpha != NULL && frame->residual != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     sl_abf_eval_g1(patch, frame->alpha, frame->residual);
+    for (int32_t s = 0; s < trace->sizes.sectors; s++) {
+        frame->aside = fmax(frame->aside, fabs(sl_abf_prescribed(solver)[s] - trace->table->theta[s]));
+    }
     sl_abf_eval_g2(&trace->table->view, frame->alpha, frame->residual + patch->nt);
     sl_abf_eval_g3(patch, trace->def.wheel, frame->alpha, frame->residual + patch->nt + trace->sizes.sectors);
     SL_TRY(lay_out(trace, frame, context));
@@ -180,6 +196,8 @@ static void write_frame(sl_writer *w, const abf_trace *t, const abf_frame *f)
     write_number(w, "g3", i->g3);
     write_number(w, "minAngle", i->min_angle);
     write_number(w, "step", i->step);
+    sl_writer_format(w, "\"solve\":%d,\"held\":%s,", f->solve, f->held ? "true" : "false");
+    write_number(w, "targetsAside", f->aside);
     sl_writer_format(w, "\"converged\":%s,\"stalled\":%s,\"floor\":%s,\"fallbacks\":%d,\"flipped\":%d,",
                      i->converged ? "true" : "false", i->stalled ? "true" : "false", i->floor ? "true" : "false",
                      i->fallbacks, f->flipped);
@@ -225,6 +243,11 @@ static void write_head(sl_writer *w, const abf_trace *t)
         sl_writer_text(w, "}");
     }
     sl_writer_text(w, "],");
+    if (t->chart.solves > 0) {
+        sl_writer_format(w, "\"solves\":%d,", t->chart.solves);
+        write_number(w, "reached", t->chart.reached);
+        write_number(w, "distance", t->chart.distance);
+    }
     write_ints(w, "triangleVertices", p->tri, 3 * (int64_t)p->nt);
     sl_writer_text(w, ",");
     write_ints(w, "inputVertex", t->pick->name, p->nv);

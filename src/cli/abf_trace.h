@@ -4,6 +4,7 @@
 #define SL_CLI_ABF_TRACE_H
 
 #include "cli/abf_pick.h"
+#include "param/abf_chart.h"
 #include "param/distortion.h"
 
 enum { ABF_MATRIX_TRIANGLES = 12 }; /* charts up to this many triangles are small: their matrices are shown */
@@ -15,6 +16,9 @@ typedef struct abf_frame {
     double *residual; /* nt of g1, sectors of g2, wheels of g3 */
     double *uv;       /* nv x 2; NULL: the angles could not be laid out */
     int32_t flipped;  /* triangles of uv */
+    int32_t solve;    /* 1, 2, ...: homotopy solves again and again, for targets nearer and nearer */
+    double aside;     /* how far its targets are from those asked for, at most [rad] */
+    bool held;        /* no step: what is held in the end, since the last solve came to nothing */
 } abf_frame;
 
 /* All of a run; what it points to is borrowed but for the frames and matrices (abf_trace_clear). */
@@ -24,6 +28,7 @@ typedef struct abf_trace {
     const abf_constraints *constraints;
     const sl_sector_table *table;
     sl_abf_def def;
+    sl_abf_chart_info chart; /* whether all targets were reached, and what is left; solves = 0: stepped by hand */
     sl_abf_sizes sizes;
     const double *phi, *weight; /* 3 nt: targets and weights of the energy */
     int32_t count;
@@ -34,8 +39,24 @@ typedef struct abf_trace {
     sl_constraint_measure *measure;
 } abf_trace;
 
+/* Has anything been left short of what was asked for? */
+static inline bool abf_trace_short(const abf_trace *trace)
+{
+    return trace->chart.solves > 0 && trace->chart.reached < 1.0;
+}
+
+/* How it ended, in a few words. */
+const char *abf_trace_verdict(const abf_trace *trace);
+
 /* Appends the solver's present state. */
 SL_NODISCARD sl_status abf_trace_add(abf_trace *trace, const sl_abf *solver, const sl_context *context);
+
+/* The last frame is no step: it belongs to the solve before it. */
+static inline void abf_trace_hold(abf_trace *trace)
+{
+    trace->frame[trace->count - 1].held = true;
+    trace->frame[trace->count - 1].solve = trace->count > 1 ? trace->frame[trace->count - 2].solve : 1;
+}
 
 /* Matrices, distortion and how well the constraints are met, once the last frame stands. */
 SL_NODISCARD sl_status abf_trace_close(abf_trace *trace, const sl_abf *solver);
@@ -54,6 +75,10 @@ const char *abf_newton_name(sl_abf_newton newton);
 
 /* Writes the trace as JSON, atomically ("-" = standard output). */
 SL_NODISCARD sl_status abf_trace_write(const abf_trace *trace, const char *path, sl_diag *diag);
+
+/* Writes the mesh with the last layout's UVs at the chart's corners, none elsewhere: as pinned, else in the unit
+ * square. */
+SL_NODISCARD sl_status abf_mesh_write(const abf_trace *trace, const char *path, sl_diag *diag);
 
 /* Writes the page. */
 SL_NODISCARD sl_status abf_report_write(const abf_trace *trace, const char *path, sl_diag *diag);

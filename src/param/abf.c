@@ -199,6 +199,12 @@ sl_status sl_abf_set_targets(sl_abf *solver, const double *theta)
     return SL_OK;
 }
 
+/* False: whoever watches has seen enough. */
+static bool is_watched(const sl_abf *solver)
+{
+    return solver->def.watch == NULL || solver->def.watch(solver->def.watch_user, solver);
+}
+
 sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context)
 {
     sl_status status = SL_OK;
@@ -208,7 +214,9 @@ sl_status sl_abf_step(sl_abf *solver, int32_t n, const sl_context *context)
             break;
         }
         SL_TRY(sl_report_progress(context, "abf", (double)i / n));
+        SL_TRY(info->iterations > 0 || is_watched(solver) ? SL_OK : SL_CANCELLED);
         SL_TRY(sl_abf_newton_step(solver));
+        SL_TRY(is_watched(solver) ? SL_OK : SL_CANCELLED);
     }
 cleanup:
     return status;
@@ -217,6 +225,11 @@ cleanup:
 const sl_abf_info *sl_abf_info_of(const sl_abf *solver)
 {
     return &solver->info;
+}
+
+const double *sl_abf_prescribed(const sl_abf *solver)
+{
+    return solver->theta;
 }
 
 const double *sl_abf_angles(const sl_abf *solver)

@@ -34,6 +34,12 @@ typedef enum sl_abf_newton {
     SL_ABF_EXACT    /* it is kept, but in triangles where the Hessian would not be positive definite: info.fallbacks */
 } sl_abf_newton;
 
+typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
+
+/* Looks on while sl_abf_step works: called before the first step towards the present targets (info.iterations = 0) and
+ * after every step. false cancels. */
+typedef bool sl_abf_watch(void *user, const sl_abf *solver);
+
 typedef struct sl_abf_def {
     sl_abf_energy energy;
     sl_abf_wheel wheel;
@@ -45,6 +51,8 @@ typedef struct sl_abf_def {
     double constraint_tolerance; /* and with max |g1|, |g2|, |g3| below this [rad, 1]; default 1e-11 */
     double accept_constraint;    /* a result at the rounding floor is accepted below this [rad, 1]; default 1e-9 */
     double min_angle;            /* measured angles are clamped up to this [rad]; default 0.1 degree */
+    sl_abf_watch *watch;         /* nullable (default) */
+    void *watch_user;
 } sl_abf_def;
 
 sl_abf_def sl_abf_default(void);
@@ -70,8 +78,6 @@ typedef struct sl_abf_sizes {
     int64_t jacobian_nonzeros, schur_nonzeros, factor_nonzeros;
     int32_t schur_rows;
 } sl_abf_sizes;
-
-typedef struct sl_abf sl_abf; /* opaque: owns angles, multipliers, factor; borrows the patch */
 
 /* SL_INFEASIBLE (a sector without corners, a region whose sectors contradict Gauss-Bonnet: sl_sectors_feasible says
  * which), SL_BAD_INPUT (sectors with a corner out of range, a theta not finite, first
@@ -99,6 +105,9 @@ sl_abf_sizes sl_abf_sizes_of(const sl_abf *solver);
 /* The Jacobian at the present angles: (nt + sectors + wheels) x 3 nt, rows g1, g2, g3; owned by the caller
  * (sl_csc_free). SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_abf_jacobian(const sl_abf *solver, sl_csc **out);
+
+/* The sums prescribed at present (sectors->count, borrowed): of the def, or of sl_abf_set_targets since. */
+const double *sl_abf_prescribed(const sl_abf *solver);
 
 /* The Schur complement of the last step, lower triangle, rows g2 then g3 (a dependent row is that of the identity);
  * borrowed, valid until the next step. */

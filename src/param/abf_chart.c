@@ -202,6 +202,11 @@ const double *sl_abf_chart_angles(const sl_abf_chart *chart)
     return chart->state;
 }
 
+const sl_abf *sl_abf_chart_solver(const sl_abf_chart *chart)
+{
+    return chart->solver;
+}
+
 void sl_abf_chart_free(sl_abf_chart *chart)
 {
     if (chart == NULL) {

@@ -24,10 +24,10 @@ typedef struct sl_abf_chart_info {
 typedef struct sl_abf_chart sl_abf_chart; /* opaque; borrows the patch and def->sectors' corners */
 
 /* Solves for the targets of def->sectors as sl_abf_chart_release does, with at least 150 Newton steps for
- * def->max_iterations as long as they make progress. Where that fails from the measured angles the
- * chart is first flattened without constraints, which gives a valid state to start from. SL_SINGULAR, SL_INFEASIBLE,
- * SL_BAD_INPUT (as sl_abf_create and sl_reconstruct_create), SL_OUT_OF_MEMORY, SL_CANCELLED. On failure *out is NULL.
- */
+ * def->max_iterations as long as they make progress; def->watch sees all of them but those of the chart without
+ * constraints. Where that fails from the measured angles the chart is first flattened without constraints, which gives
+ * a valid state to start from. SL_SINGULAR, SL_INFEASIBLE, SL_BAD_INPUT (as sl_abf_create and sl_reconstruct_create),
+ * SL_OUT_OF_MEMORY, SL_CANCELLED. On failure *out is NULL. */
 SL_NODISCARD sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_def *def, const sl_context *context,
                                            sl_abf_chart **out);
 
@@ -60,6 +60,9 @@ SL_NODISCARD sl_status sl_abf_chart_release(sl_abf_chart *chart, const double *t
 const sl_abf_chart_info *sl_abf_chart_info_of(const sl_abf_chart *chart); /* borrowed */
 const double *sl_abf_chart_uv(const sl_abf_chart *chart);                 /* nv x 2: the layout held, borrowed */
 const double *sl_abf_chart_angles(const sl_abf_chart *chart);             /* 3 nt: the angles held, borrowed */
+
+/* The solver, at the state held and its targets (after a move that was rolled back, too); borrowed. */
+const sl_abf *sl_abf_chart_solver(const sl_abf_chart *chart);
 
 void sl_abf_chart_free(sl_abf_chart *chart); /* NULL is a no-op */
 

@@ -34,6 +34,7 @@ static sl_status start_free(sl_abf_chart *chart, const sl_context *context)
     sl_abf_def def = solver->def;
     bool valid = false;
     def.sectors = NULL;
+    def.watch = NULL; /* its sectors are others */
     SL_TRY(sl_abf_create(chart->patch, &def, &plain));
     SL_TRY(sl_abf_solve_patiently(plain, context));
     chart->info.iterations += plain->info.iterations;

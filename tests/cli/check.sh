@@ -162,12 +162,35 @@ expect 0 "$seamlab" abf tent.obj --wheel product --energy unweighted --quiet
 expect 4 "$seamlab" abf tent.obj --angle 1=400
 contains err.txt 'vertex 1'
 expect 4 "$seamlab" abf tent.obj --angle 1=100 --iterations 0
+expect 4 "$seamlab" abf tent.obj --angle 1=340 --trace short.json # within its triangles, but not within reach
+contains out.txt 'stopped short of the targets'
+contains out.txt 'degrees are left at the worst vertex'
+contains out.txt 'back to the last valid state'
+contains short.json '"reached":0.8'
+json short.json
+expect 4 "$seamlab" abf tent.obj --angle 1=340 --iterations 30
+contains out.txt 'stalled'
+expect 4 "$seamlab" abf tent.obj --angle 1=350 --angle 2=350
+contains err.txt 'together'
+contains err.txt 'vertices 1, 2'
+expect 0 "$seamlab" abf tent.obj --straight 1,5 -o flat.obj
+contains err.txt 'the shortest way has 3 vertices, 1,0,5'
+expect 0 "$seamlab" measure flat.obj --json
+contains out.txt '"flip":0'
+expect 0 "$seamlab" abf tent.obj --pin 1=3,4 --pin 5=3,6 -o pinned.ply --quiet
+expect 2 "$seamlab" abf tent.obj --straight 1,2 # an edge is straight as it is
+expect 2 "$seamlab" abf tent.obj -o flat.off
+if command -v script >/dev/null; then # a terminal, and the end of input that quits before it converges
+    expect 0 script -qec "$seamlab abf tent.obj --angle 1=100 --step" /dev/null
+    expect 4 script -qec "$seamlab abf tent.obj --angle 1=100 --step --strict" /dev/null
+fi
 expect 3 "$seamlab" abf tent.obj --angle 77=90
 contains err.txt 'no vertex 77'
 expect 2 "$seamlab" abf tent.obj --angle 1
 expect 2 "$seamlab" abf tent.obj --rectangle 1,3,5
 expect 2 "$seamlab" abf tent.obj --pin 1=0,0 --pin 2=1,0 --pin 3=1,1
-expect 0 "$seamlab" abf $mesh --quiet --trace hand.json
+expect 0 "$seamlab" abf $mesh --quiet --trace hand.json -o hand-part.obj
+contains hand-part.obj '^vt '
 json hand.json
 expect 0 "$seamlab" abf $mesh --chart 1
 contains err.txt 'is no disk'
