@@ -1,279 +1,194 @@
 #include "pack/pack.h"
 
 #include "base/memory.h"
-#include "geom/hull.h"
-#include "pack/pack_internal.h"
+#include "pack/separate.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-/* Columns a page has: finer ones waste less beside each chart and cost more. */
-static const int32_t page_columns = 512;
+enum {
+    MAX_EFFORT = 12,
+    MAX_PAGES = 1000,
+    MAX_STARTS = 4,
+    FINE = 1024, /* cells along a page's width, at last */
+    FINEST = 2048,
+    FINEST_EFFORT = 6, /* ... from this effort on */
+    FEWEST_SWEEPS = 15,
+    ROAMING_LEVELS = 2,
+    MOST_CHARTS = 2048 /* that are pushed apart: the work grows by the square of their number */
+};
 
-/* Scales tried after the first one that fits; each halves the interval. */
-static const int32_t bisections = 14;
+static const double first_step = 1e-2, later_step = 5e-3; /* of the scale, relative */
 
-/* The first scale would fill this much of the page; no packing of ours reaches it. */
-static const double hopeful_fill = 0.95;
-
-static const double two_pi = 6.283185307179586;
-static const double root_two = 1.4142135623730951;
-
-/* A chart's place in the order of packing. */
-typedef struct pack_item {
-    double key; /* larger first */
-    int32_t chart;
-} pack_item;
-
-typedef struct packer {
-    int32_t count;
-    const sl_pack_chart *charts;
-    const sl_pack_def *def;
-    double *angle;    /* count: of the smallest enclosing rectangle */
-    double *area;     /* count: UV area */
-    double *extent;   /* count: longer side of that rectangle */
-    pack_item *order; /* count, for the order at hand */
-    sl_horizon horizon;
-    sl_profile trial, best; /* buffers, swapped */
-    sl_placement *place, *best_place;
-} packer;
+static const int64_t first_work = 12500000; /* words; doubled by each step of effort */
 
 sl_pack_def sl_pack_default(void)
 {
-    return (sl_pack_def){.resolution = 2048, .margin = 4.0, .rotations = 4, .turns = 1};
+    return (sl_pack_def){.resolution = 2048, .margin = 4.0, .rotations = SL_ROTATE_FREE, .effort = 2, .pages = 1};
 }
 
-static double chart_area(const sl_pack_chart *chart)
+typedef struct outline_job {
+    const sl_pack_chart *chart;
+    sl_outline *outline;
+    sl_status *status;
+} outline_job;
+
+static void make_outlines(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const outline_job *job = user;
+    for (int64_t c = begin; c < end; c++) {
+        job->status[c] = sl_outline_init(&job->chart[c], &job->outline[c]);
+    }
+}
+
+/* All outlines; of several failures the first chart's is told. */
+static sl_status init_outlines(int32_t count, const sl_pack_chart *charts, const sl_context *context, sl_outline *out)
+{
+    sl_status status = SL_OK;
+    outline_job job = {charts, out, sl_calloc(count, sizeof *job.status)};
+    SL_TRY(job.status != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    sl_parallel_for(context, count, 1, make_outlines, &job);
+    for (int32_t c = 0; c < count; c++) {
+        SL_TRY(job.status[c]);
+    }
+cleanup:
+    sl_free(job.status);
+    return status;
+}
+
+typedef struct start {
+    const sl_pack_task *task;
+    sl_separate_def def;
+    sl_arrangement arrangement;
+    int32_t attempts;
+    sl_status status;
+} start;
+
+static void run_starts(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    start *starts = user;
+    for (int64_t k = begin; k < end; k++) {
+        starts[k].status = sl_separate(starts[k].task, &starts[k].def, &starts[k].arrangement, &starts[k].attempts);
+    }
+}
+
+/* Separates from the same arrangement with several seeds; the best of what they give. */
+static sl_status separate_from_starts(const sl_pack_task *task, const sl_separate_def *def, int32_t count,
+                                      sl_arrangement *best, int32_t *attempts)
+{
+    start starts[MAX_STARTS] = {0};
+    sl_status status = SL_OK;
+    for (int32_t k = 0; k < count; k++) {
+        starts[k] = (start){task, *def, {best->scale, sl_copy(best->pose, task->count, sizeof *best->pose)}, 0, SL_OK};
+        starts[k].def.seed = (uint64_t)k;
+        SL_TRY(starts[k].arrangement.pose != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    }
+    sl_parallel_for(count > 1 ? task->context : NULL, count, 1, run_starts, starts);
+    for (int32_t k = 0; k < count; k++) {
+        SL_TRY(starts[k].status);
+        *attempts += starts[k].attempts;
+        if (starts[k].arrangement.scale > best->scale) {
+            const sl_arrangement kept = *best;
+            *best = starts[k].arrangement;
+            starts[k].arrangement = kept;
+        }
+    }
+cleanup:
+    for (int32_t k = 0; k < count; k++) {
+        sl_free(starts[k].arrangement.pose);
+    }
+    return status;
+}
+
+/* Packs the arrangement tighter, on ever finer grids; charts roam the page on the first two. */
+static sl_status tighten(const sl_pack_task *task, const sl_pack_def *def, sl_arrangement *best, int32_t *attempts)
+{
+    sl_status status = SL_OK;
+    const int32_t first = sl_search_grid(task), limit = 2 * def->resolution;
+    int32_t finest = def->effort >= FINEST_EFFORT ? FINEST : FINE;
+    finest = limit < finest ? limit : finest; /* cells of half a texel are fine enough */
+    const int32_t starts = def->effort >= 8 ? 4 : def->effort >= 6 ? 2 : 1;
+    int32_t sweeps = FEWEST_SWEEPS << (def->effort / 2);
+    for (int32_t grid = first, level = 0; grid <= finest; grid *= 2, level++) {
+        const sl_separate_def separate = {
+            .grid = grid,
+            .far = level < ROAMING_LEVELS,
+            .sweeps = sweeps,
+            .step = level == 0 ? first_step : later_step,
+            .halvings = level < ROAMING_LEVELS ? 3 : 2,
+            .rotations = def->rotations,
+        };
+        SL_TRY(sl_report_progress(task->context, "packing", 0.6 + 0.1 * level));
+        SL_TRY(separate_from_starts(task, &separate, level == 0 ? starts : 1, best, attempts));
+        sweeps = sweeps > 2 ? sweeps / 2 : 1;
+    }
+cleanup:
+    return status;
+}
+
+/* From poses of centres in texels to what the caller applies to UVs. */
+static void hand_out(const sl_pack_task *task, const sl_arrangement *best, sl_placement *placement, sl_pack_info *info)
 {
     double area = 0.0;
-    for (int32_t t = 0; t < chart->nt; t++) {
-        const double *a = chart->uv + 2 * (int64_t)chart->tri[3 * (int64_t)t];
-        const double *b = chart->uv + 2 * (int64_t)chart->tri[3 * (int64_t)t + 1];
-        const double *c = chart->uv + 2 * (int64_t)chart->tri[3 * (int64_t)t + 2];
-        area += 0.5 * fabs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+    info->scale = best->scale / task->width;
+    for (int32_t c = 0; c < task->count; c++) {
+        const sl_pose *pose = &best->pose[c];
+        const double *centre = task->outline[c].centre;
+        const double cosine = cos(pose->angle), sine = sin(pose->angle);
+        placement[c] = (sl_placement){
+            .angle = pose->angle,
+            .offset = {pose->at[0] / task->width - info->scale * (cosine * centre[0] - sine * centre[1]),
+                       pose->at[1] / task->width - info->scale * (sine * centre[0] + cosine * centre[1])},
+            .page = pose->page,
+        };
+        info->pages = pose->page >= info->pages ? pose->page + 1 : info->pages;
+        area += task->outline[c].area;
     }
-    return area;
-}
-
-static int compare_items(const void *pa, const void *pb)
-{
-    const pack_item *a = pa, *b = pb;
-    if (a->key != b->key) {
-        return a->key > b->key ? -1 : 1;
-    }
-    return (a->chart > b->chart) - (a->chart < b->chart);
-}
-
-static void packer_clear(packer *p)
-{
-    sl_free(p->angle);
-    sl_free(p->area);
-    sl_free(p->extent);
-    sl_free(p->order);
-    sl_free(p->horizon.height);
-    sl_free(p->trial.low);
-    sl_free(p->trial.high);
-    sl_free(p->best.low);
-    sl_free(p->best.high);
-    sl_free(p->place);
-    sl_free(p->best_place);
-}
-
-static sl_status measure_charts(packer *p)
-{
-    for (int32_t c = 0; c < p->count; c++) {
-        const sl_pack_chart *chart = &p->charts[c];
-        sl_rectangle box;
-        for (int64_t k = 0; k < 2 * (int64_t)chart->nv; k++) {
-            if (!isfinite(chart->uv[k])) {
-                return SL_BAD_INPUT;
-            }
-        }
-        const sl_status status = sl_min_area_rectangle(chart->uv, chart->nv, &box);
-        if (status != SL_OK) {
-            return status;
-        }
-        p->angle[c] = -box.angle;
-        p->extent[c] = fmax(box.width, box.height);
-        p->area[c] = chart_area(chart);
-    }
-    return SL_OK;
-}
-
-static sl_status packer_init(packer *p)
-{
-    const int32_t n = p->count;
-    p->horizon.side = p->def->resolution;
-    p->horizon.columns = p->def->resolution < page_columns ? p->def->resolution : page_columns;
-    p->horizon.cell = p->horizon.side / p->horizon.columns;
-    p->angle = sl_alloc(n, sizeof *p->angle);
-    p->area = sl_alloc(n, sizeof *p->area);
-    p->extent = sl_alloc(n, sizeof *p->extent);
-    p->order = sl_alloc(n, sizeof *p->order);
-    p->place = sl_calloc(n, sizeof *p->place);
-    p->best_place = sl_calloc(n, sizeof *p->best_place);
-    p->horizon.height = sl_alloc(p->horizon.columns, sizeof *p->horizon.height);
-    p->trial.low = sl_alloc(p->horizon.columns, sizeof *p->trial.low);
-    p->trial.high = sl_alloc(p->horizon.columns, sizeof *p->trial.high);
-    p->best.low = sl_alloc(p->horizon.columns, sizeof *p->best.low);
-    p->best.high = sl_alloc(p->horizon.columns, sizeof *p->best.high);
-    if (p->angle == NULL || p->area == NULL || p->extent == NULL || p->order == NULL || p->place == NULL ||
-        p->best_place == NULL || p->horizon.height == NULL || p->trial.low == NULL || p->trial.high == NULL ||
-        p->best.low == NULL || p->best.high == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    return measure_charts(p);
-}
-
-/* A chart without extent gets one texel: it is grown by half a texel more. */
-static double growth(const packer *p, int32_t chart)
-{
-    return 0.5 * p->def->margin + (p->extent[chart] > 0.0 ? 0.0 : 0.5);
-}
-
-/* Puts one chart where it costs least over its orientations. */
-static bool put_chart(packer *p, int32_t chart, double scale)
-{
-    bool found = false;
-    int32_t best_x = 0;
-    double best_y = 0.0, best_cost = HUGE_VAL, best_angle = 0.0;
-    for (int32_t r = 0; r < p->def->rotations; r++) {
-        int32_t x = 0;
-        double y = 0.0, cost = HUGE_VAL;
-        const double angle = p->angle[chart] + two_pi * r / p->def->rotations;
-        if (sl_profile_make(&p->charts[chart], angle, scale, growth(p, chart), p->horizon.cell, p->horizon.columns,
-                            &p->trial) &&
-            sl_horizon_find(&p->horizon, &p->trial, &x, &y, &cost) && cost < best_cost) {
-            const sl_profile kept = p->best;
-            p->best = p->trial;
-            p->trial = kept;
-            best_x = x;
-            best_y = y;
-            best_cost = cost;
-            best_angle = angle;
-            found = true;
-        }
-    }
-    if (found) {
-        sl_horizon_put(&p->horizon, &p->best, best_x, best_y);
-        p->place[chart].angle = best_angle;
-        p->place[chart].offset[0] = (p->best.origin[0] + best_x * p->horizon.cell) / p->horizon.side;
-        p->place[chart].offset[1] = (p->best.origin[1] + best_y) / p->horizon.side;
-    }
-    return found;
-}
-
-/* Packs everything at one scale [texels a UV unit] in one order; false when something does not fit. */
-static bool pack_at(packer *p, double scale, bool by_area)
-{
-    for (int32_t c = 0; c < p->count; c++) {
-        p->order[c] = (pack_item){by_area ? p->area[c] : p->extent[c], c};
-    }
-    qsort(p->order, (size_t)p->count, sizeof *p->order, compare_items);
-    memset(p->horizon.height, 0, (size_t)p->horizon.columns * sizeof *p->horizon.height);
-    for (int32_t k = 0; k < p->count; k++) {
-        if (!put_chart(p, p->order[k].chart, scale)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Keeps the places found when they are at a larger scale than any before. */
-static bool attempt(packer *p, double scale, sl_pack_info *info)
-{
-    for (int32_t by_area = 0; by_area < 2; by_area++) {
-        info->attempts++;
-        if (pack_at(p, scale, by_area != 0)) {
-            sl_placement *kept = p->best_place;
-            p->best_place = p->place;
-            p->place = kept;
-            return true;
-        }
-    }
-    return false;
-}
-
-/* No scale above this one can fit: all area must, and so must the longest chart along the page's diagonal. */
-static double highest_scale(const packer *p, double area)
-{
-    double high = area > 0.0 ? p->horizon.side * sqrt(hopeful_fill / area) : 1.0;
-    for (int32_t c = 0; area > 0.0 && c < p->count; c++) { /* needles: area alone is no bound to begin from */
-        high = p->extent[c] > 0.0 ? fmin(high, root_two * p->horizon.side / p->extent[c]) : high;
-    }
-    return high;
-}
-
-/* Largest scale that fits, by bisection over counted attempts. */
-static sl_status search_scale(packer *p, double area, const sl_context *context, sl_pack_info *info, double *scale)
-{
-    double high = highest_scale(p, area), low = 0.0;
-    double trial = high * 0.75;
-    for (int32_t k = 0; k < 2 * bisections; k++) {
-        const sl_status status = sl_report_progress(context, "packing", (double)k / (2 * bisections));
-        if (status != SL_OK) {
-            return status;
-        }
-        if (attempt(p, trial, info)) {
-            low = trial;
-        } else {
-            high = trial;
-        }
-        if (low > 0.0 && high - low < 2e-3 * low) {
-            break;
-        }
-        trial = low > 0.0 ? 0.5 * (low + high) : 0.5 * high;
-    }
-    if (low <= 0.0 && (area > 0.0 || !attempt(p, 0.0, info))) { /* without area: one point each and their margins */
-        return SL_INFEASIBLE;
-    }
-    *scale = low;
-    return SL_OK;
-}
-
-/* The search with the largest chart turned a little each time. */
-static sl_status search_turns(packer *p, double area, const sl_context *context, sl_placement *placement,
-                              sl_pack_info *info, double *scale)
-{
-    const int32_t turns = p->def->turns > 1 ? p->def->turns : 1;
-    int32_t largest = 0;
-    for (int32_t c = 1; c < p->count; c++) {
-        largest = p->area[c] > p->area[largest] ? c : largest;
-    }
-    for (int32_t turn = 0; turn < turns; turn++) {
-        double found = 0.0;
-        const sl_status status = search_scale(p, area, context, info, &found);
-        if (status != SL_OK) {
-            return status;
-        }
-        if (p->count > 0 && (turn == 0 || found > *scale)) {
-            memcpy(placement, p->best_place, (size_t)p->count * sizeof *placement);
-            *scale = found;
-        }
-        if (p->count > 0) {
-            p->angle[largest] += 0.25 * two_pi / turns;
-        }
-    }
-    return SL_OK;
+    info->fill = info->pages > 0 ? area * best->scale * best->scale / (task->width * task->height * info->pages) : 0.0;
 }
 
 sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def *def, const sl_context *context,
                   sl_placement *placement, sl_pack_info *info)
 {
-    SL_ASSERT(count >= 0 && def->resolution > 0 && def->rotations > 0 && def->margin >= 0.0);
-    packer p = {.count = count, .charts = charts, .def = def};
-    double area = 0.0, scale = 0.0;
+    SL_ASSERT(count >= 0 && def->resolution > 0 && def->height >= 0 && def->margin >= 0.0 && def->density >= 0.0);
+    SL_ASSERT(def->effort >= 0 && def->effort <= MAX_EFFORT && def->pages >= 0 && def->pages <= MAX_PAGES);
     sl_status status = SL_OK;
+    sl_outline *outline = sl_calloc(count, sizeof *outline);
+    double *upright = sl_alloc(count, sizeof *upright);
+    sl_arrangement best = {.pose = sl_calloc(count, sizeof *best.pose)};
     *info = (sl_pack_info){0};
-    SL_TRY(packer_init(&p));
-    for (int32_t c = 0; c < count; c++) {
-        area += p.area[c];
+    if (outline == NULL || upright == NULL || best.pose == NULL) {
+        SL_TRY(SL_OUT_OF_MEMORY);
     }
-    SL_TRY(search_turns(&p, area, context, placement, info, &scale));
-    info->scale = scale / p.horizon.side;
-    info->fill = area * info->scale * info->scale;
+    SL_TRY(init_outlines(count, charts, context, outline));
+    for (int32_t c = 0; c < count; c++) {
+        upright[c] = charts[c].upright;
+    }
+    const sl_pack_task task = {
+        .count = count,
+        .outline = outline,
+        .width = def->resolution,
+        .height = def->height > 0 ? def->height : def->resolution,
+        .margin = def->margin,
+        .pages = def->pages > 0 ? def->pages : 1,
+        .context = context,
+    };
+    const sl_search_def search = {def->rotations, upright, def->density,
+                                  def->effort > 0 ? first_work << def->effort : 0};
+    if (count > 0) {
+        SL_TRY(sl_search(&task, &search, &best, &info->attempts));
+        if (def->density <= 0.0 && best.scale > 0.0 && count <= MOST_CHARTS) {
+            SL_TRY(tighten(&task, def, &best, &info->attempts));
+        }
+    }
+    hand_out(&task, &best, placement, info);
 cleanup:
-    packer_clear(&p);
+    for (int32_t c = 0; outline != NULL && c < count; c++) {
+        sl_outline_clear(&outline[c]);
+    }
+    sl_free(outline);
+    sl_free(upright);
+    sl_free(best.pose);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Charts into the unit square at one common scale.
+/* Charts onto texture pages by shape, at one common scale.
  * Layer: pack (may include overlap, geom, base). */
 #ifndef SL_PACK_PACK_H
 #define SL_PACK_PACK_H
@@ -10,34 +10,52 @@ typedef struct sl_pack_chart {
     int32_t nv, nt;
     const double *uv;   /* nv x 2 */
     const int32_t *tri; /* 3 nt */
+    double upright;     /* angle at which it stands upright [rad]; where turns by right angles begin; default 0 */
 } sl_pack_chart;
 
-/* Where a chart went: atlas uv = scale * R(angle) uv + offset, in [0, 1]^2. */
+/* Where a chart went: atlas uv = scale * R(angle) uv + offset. A page is [0, 1] x [0, height / width]. */
 typedef struct sl_placement {
     double angle; /* [rad] */
     double offset[2];
+    int32_t page; /* from 0 */
 } sl_placement;
 
+/* How charts may be turned. */
+typedef enum sl_pack_rotations {
+    SL_ROTATE_FREE,  /* by any angle */
+    SL_ROTATE_RIGHT, /* upright, or by right angles from there */
+    SL_ROTATE_NONE   /* upright */
+} sl_pack_rotations;
+
 typedef struct sl_pack_def {
-    int32_t resolution; /* texels a side; default 2048 */
-    double margin;      /* least distance between charts [texels]; half of it to the page's edge; default 4 */
-    int32_t rotations;  /* orientations tried a chart besides its minimum-area rectangle's; default 4 (by 90 degrees) */
-    int32_t turns;      /* the largest chart is also turned by this many parts of a quarter, the whole packing done anew
-                           each time and the largest scale kept: for few, large charts; default 1, as is 0 */
+    int32_t resolution;          /* texels along a page's width; default 2048 */
+    double margin;               /* least distance between charts [texels]; half of it to the page's edge; default 4 */
+    sl_pack_rotations rotations; /* default SL_ROTATE_FREE */
+    int32_t
+        effort; /* 0: one pass over the charts a scale; each step beyond that doubles the work; default 4, up to 12 */
+    int32_t height; /* texels along a page's height; 0 = as the width; default 0 */
+    int32_t pages;  /* at most so many pages; default 1, as is 0 */
+    double density; /* texels a UV unit; 0 = the largest that fits; default 0 */
 } sl_pack_def;
 
 sl_pack_def sl_pack_default(void);
 
 typedef struct sl_pack_info {
-    double scale;     /* one for all charts: keeps texel densities equal */
-    double fill;      /* covered area / page area */
-    int32_t attempts; /* scales tried */
+    double scale;     /* one for all charts: keeps texel densities equal; page widths a UV unit */
+    double fill;      /* covered area / area of the pages used */
+    int32_t pages;    /* pages used */
+    int32_t attempts; /* times all charts were laid out */
 } sl_pack_info;
 
-/* placement: count. Charts are never reflected. By shape: horizon per chart outline at a coarse grid of the target
- * resolution, largest first, the scale found by bisection over counted attempts. Zero-size charts (isolated degenerate
- * facets) get one texel each. SL_INFEASIBLE (so many charts that one texel each and their margins do not fit),
- * SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY, SL_CANCELLED. Deterministic. */
+/* placement: count. Charts are never reflected.
+ *
+ * Charts become masks of grid cells, one for each of several orientations: every cell that the chart grown by half the
+ * margin touches. Masks that share no cell are therefore a margin apart, whatever their shapes: they nest in
+ * holes and bays. Largest first, each goes where it lies lowest and leftmost. A search over orders and orientations
+ * follows, at growing scales; then the best arrangement is packed tighter on finer grids, down to a 2048th of the page.
+ * Zero-size charts (isolated degenerate facets) get one texel each. SL_INFEASIBLE (so many charts that one texel each
+ * and their margins do not fit, or not at the density asked for), SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY,
+ * SL_CANCELLED. Work is counted, never timed; the same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def *def,
                                const sl_context *context, sl_placement *placement, sl_pack_info *info);
 

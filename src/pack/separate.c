@@ -1,0 +1,402 @@
+#include "pack/separate.h"
+
+#include "base/memory.h"
+#include "base/rng.h"
+#include "pack/field.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    COARSE = 4,         /* cells of the grid along one of the coarse grid */
+    NEAR_TURNS = 5,     /* as it stands, and a little turned */
+    FAR_TURNS = 10,     /* ... by right angles, and by chance */
+    STRAIGHT_REACH = 8, /* cells: how far around a chart's place it may move as it stands */
+    TURNED_REACH = 4,   /* ... turned, and around a place on the coarse grid */
+    FIRST_WEIGHT = 16,  /* of a pair's overlap */
+    LAST_WEIGHT = 1 << 12,
+    MAX_SWEEPS = 2000,
+    MAX_SCALES = 200
+};
+
+static const double half_pi = 1.5707963267948966;
+static const double jitter[NEAR_TURNS] = {0.0, 0.02, -0.02, 0.06, -0.06}; /* [rad] */
+static const double least_gain = 1.2, most_gain = 2.0,
+                    decay = 0.95; /* of weights, by a sweep; gains by share of the largest overlap */
+
+typedef struct separation {
+    const sl_pack_task *task;
+    const sl_separate_def *def;
+    int32_t turns;
+    double *angle; /* count x turns */
+    sl_sheet sheet, coarse;
+    sl_spot *spot;
+    int32_t *weight, *overlap; /* count x count: by pair; overlaps in cells */
+    int32_t *owner;            /* a page's cells: the first chart there */
+    int32_t *order;            /* charts to be moved */
+    sl_field near, far, far_coarse;
+    int32_t *line; /* costs of a row of places */
+    sl_rng rng;
+} separation;
+
+/* A place that was looked at. */
+typedef struct choice {
+    int64_t cost;
+    int32_t turn, x, y;
+} choice;
+
+static const sl_mask *mask_at(const separation *s, int32_t chart, int32_t turn)
+{
+    return &s->sheet.mask[(int64_t)chart * s->turns + turn];
+}
+
+static const sl_mask *mask_of(const separation *s, int32_t chart)
+{
+    return mask_at(s, chart, s->spot[chart].turn);
+}
+
+/* The weights of all others in a window. */
+static void fill_field(const separation *s, int32_t chart, const int32_t low[2], const int32_t size[2], sl_field *field)
+{
+    const int32_t *weight = s->weight + (int64_t)chart * s->task->count;
+    sl_field_begin(field, low, size);
+    for (int32_t c = 0; c < s->task->count; c++) {
+        if (c != chart && s->spot[c].page == s->spot[chart].page) {
+            sl_field_add(field, mask_of(s, c), s->spot[c].x, s->spot[c].y, weight[c]);
+        }
+    }
+    sl_field_sum(field);
+}
+
+static bool inside(const sl_field *field, const sl_mask *mask, int32_t x, int32_t y)
+{
+    return x >= field->low[0] && y >= field->low[1] && x + mask->width <= field->low[0] + field->size[0] &&
+           y + mask->height <= field->low[1] + field->size[1];
+}
+
+/* The places within reach of (x0, y0), ring by ring outwards, until one is free. */
+static void look_around(const separation *s, const sl_field *field, int32_t chart, choice from, int32_t reach,
+                        choice *best)
+{
+    const sl_mask *mask = mask_at(s, chart, from.turn);
+    for (int32_t d = 0; mask->width > 0 && d <= reach && best->cost > 0; d++) {
+        for (int32_t y = from.y - d; y <= from.y + d; y++) {
+            const bool edge = y == from.y - d || y == from.y + d;
+            for (int32_t x = from.x - d; x <= from.x + d; x += edge || d == 0 ? 1 : 2 * d) {
+                if (inside(field, mask, x, y)) {
+                    const int64_t cost = sl_field_cost(field, mask, x, y, best->cost);
+                    *best = cost < best->cost ? (choice){cost, from.turn, x, y} : *best;
+                }
+            }
+        }
+    }
+}
+
+/* Where a chart's corner is when it is turned another way around its centre. */
+static choice turned(const separation *s, int32_t chart, int32_t turn)
+{
+    const sl_spot *at = &s->spot[chart];
+    const sl_mask *from = mask_of(s, chart), *to = mask_at(s, chart, turn);
+    return (choice){0, turn, (int32_t)floor(at->x + from->origin[0] - to->origin[0] + 0.5),
+                    (int32_t)floor(at->y + from->origin[1] - to->origin[1] + 0.5)};
+}
+
+static void look_near(separation *s, int32_t chart, choice *best)
+{
+    const int32_t page[2] = {s->sheet.width, s->sheet.height};
+    const sl_mask *mask = mask_of(s, chart);
+    int32_t low[2] = {s->spot[chart].x, s->spot[chart].y}, high[2] = {low[0] + mask->width, low[1] + mask->height};
+    for (int32_t t = 1; t < NEAR_TURNS && t < s->turns; t++) {
+        const choice at = turned(s, chart, t);
+        const sl_mask *other = mask_at(s, chart, t);
+        low[0] = at.x < low[0] ? at.x : low[0];
+        low[1] = at.y < low[1] ? at.y : low[1];
+        high[0] = at.x + other->width > high[0] ? at.x + other->width : high[0];
+        high[1] = at.y + other->height > high[1] ? at.y + other->height : high[1];
+    }
+    int32_t size[2];
+    for (int i = 0; i < 2; i++) {
+        low[i] = low[i] > STRAIGHT_REACH ? low[i] - STRAIGHT_REACH : 0;
+        high[i] = high[i] + STRAIGHT_REACH < page[i] ? high[i] + STRAIGHT_REACH : page[i];
+        size[i] = high[i] - low[i];
+    }
+    fill_field(s, chart, low, size, &s->near);
+    look_around(s, &s->near, chart, turned(s, chart, s->spot[chart].turn), STRAIGHT_REACH, best);
+    for (int32_t t = 1; t < NEAR_TURNS && t < s->turns; t++) {
+        look_around(s, &s->near, chart, turned(s, chart, t), TURNED_REACH, best);
+    }
+}
+
+/* The best place on the coarse grid; false: larger than the page. */
+static bool coarse_place(separation *s, const sl_mask *mask, int32_t *best_x, int32_t *best_y)
+{
+    const sl_field *field = &s->far_coarse;
+    const int32_t columns = field->size[0] - mask->width + 1, rows = field->size[1] - mask->height + 1;
+    int32_t least = INT32_MAX;
+    for (int32_t y = 0; mask->width > 0 && columns > 0 && y < rows; y++) {
+        memset(s->line, 0, (size_t)columns * sizeof *s->line);
+        for (int32_t r = 0; r < mask->count; r++) {
+            const int32_t *from = field->sum + (int64_t)(y + mask->run[r].row) * field->stride + mask->run[r].left;
+            const int32_t *to = from + mask->run[r].length;
+            for (int32_t x = 0; x < columns; x++) {
+                s->line[x] += to[x] - from[x];
+            }
+        }
+        for (int32_t x = 0; x < columns; x++) {
+            if (s->line[x] < least) {
+                least = s->line[x];
+                *best_x = x;
+                *best_y = y;
+            }
+        }
+    }
+    return least < INT32_MAX;
+}
+
+static void look_far(separation *s, int32_t chart, choice *best)
+{
+    const int32_t low[2] = {0, 0}, size[2] = {s->sheet.width, s->sheet.height};
+    fill_field(s, chart, low, size, &s->far);
+    sl_field_coarsen(&s->far, COARSE, &s->far_coarse);
+    for (int32_t t = 0; t < s->turns && best->cost > 0; t++) {
+        const sl_mask *mask = &s->coarse.mask[(int64_t)chart * s->turns + t], *fine = mask_at(s, chart, t);
+        int32_t x = 0, y = 0;
+        if (coarse_place(s, mask, &x, &y)) {
+            const choice from = {0, t, (int32_t)floor((x + mask->origin[0]) * COARSE - fine->origin[0] + 0.5),
+                                 (int32_t)floor((y + mask->origin[1]) * COARSE - fine->origin[1] + 0.5)};
+            look_around(s, &s->far, chart, from, TURNED_REACH, best);
+        }
+    }
+}
+
+static void move_chart(separation *s, int32_t chart)
+{
+    choice best = {INT64_MAX, s->spot[chart].turn, s->spot[chart].x, s->spot[chart].y};
+    look_near(s, chart, &best);
+    if (best.cost > 0 && s->def->far) {
+        look_far(s, chart, &best);
+    }
+    s->spot[chart].turn = best.turn;
+    s->spot[chart].x = best.x;
+    s->spot[chart].y = best.y;
+}
+
+/* Counts the cells of one page that charts share with the first one there. */
+static int64_t count_page(separation *s, int32_t page)
+{
+    const int32_t n = s->task->count, width = s->sheet.width;
+    int64_t total = 0;
+    memset(s->owner, 0xff, (size_t)((int64_t)width * s->sheet.height) * sizeof *s->owner);
+    for (int32_t c = 0; c < n; c++) {
+        const sl_mask *mask = mask_of(s, c);
+        for (int32_t r = 0; s->spot[c].page == page && r < mask->count; r++) {
+            int32_t *owner =
+                s->owner + (int64_t)(s->spot[c].y + mask->run[r].row) * width + s->spot[c].x + mask->run[r].left;
+            for (int32_t x = 0; x < mask->run[r].length; x++) {
+                if (owner[x] < 0) {
+                    owner[x] = c;
+                } else {
+                    s->overlap[(int64_t)c * n + owner[x]]++;
+                    s->overlap[(int64_t)owner[x] * n + c]++;
+                    total++;
+                }
+            }
+        }
+    }
+    return total;
+}
+
+static int64_t count_overlaps(separation *s)
+{
+    int64_t total = 0;
+    const int64_t pairs = (int64_t)s->task->count * s->task->count;
+    memset(s->overlap, 0, (size_t)pairs * sizeof *s->overlap);
+    for (int32_t p = 0; p < s->task->pages; p++) {
+        total += count_page(s, p);
+    }
+    return total;
+}
+
+/* Pairs that overlap weigh more from now on, those that do not weigh less. */
+static void change_weights(separation *s)
+{
+    const int64_t pairs = (int64_t)s->task->count * s->task->count;
+    int32_t most = 1;
+    for (int64_t k = 0; k < pairs; k++) {
+        most = s->overlap[k] > most ? s->overlap[k] : most;
+    }
+    for (int64_t k = 0; k < pairs; k++) {
+        const double gain = s->overlap[k] > 0 ? least_gain + (most_gain - least_gain) * s->overlap[k] / most : decay;
+        s->weight[k] = (int32_t)fmax(FIRST_WEIGHT,
+                                     fmin(LAST_WEIGHT, gain > 1.0 ? ceil(gain * s->weight[k]) : gain * s->weight[k]));
+    }
+}
+
+/* Charts that overlap, in a random order. Returns how many. */
+static int32_t list_movers(separation *s)
+{
+    const int32_t n = s->task->count;
+    int32_t count = 0;
+    for (int32_t c = 0; c < n; c++) {
+        bool overlaps = false;
+        for (int32_t d = 0; d < n && !overlaps; d++) {
+            overlaps = s->overlap[(int64_t)c * n + d] > 0;
+        }
+        if (overlaps) {
+            s->order[count++] = c;
+        }
+    }
+    for (int32_t i = count - 1; i > 0; i--) {
+        const int32_t j = (int32_t)(sl_rng_uniform(&s->rng) * (i + 1)), kept = s->order[i];
+        s->order[i] = s->order[j];
+        s->order[j] = kept;
+    }
+    return count;
+}
+
+/* Moves charts until none overlaps another. false: given up. */
+static bool push_apart(separation *s)
+{
+    int64_t least = INT64_MAX;
+    for (int64_t k = 0; k < (int64_t)s->task->count * s->task->count; k++) {
+        s->weight[k] = FIRST_WEIGHT;
+    }
+    for (int32_t sweep = 0, since = 0; since <= s->def->sweeps && sweep < MAX_SWEEPS; sweep++, since++) {
+        const int64_t total = count_overlaps(s);
+        if (total == 0) {
+            return true;
+        }
+        if (total < least) {
+            least = total;
+            since = 0;
+        }
+        if (sweep > 0) {
+            change_weights(s);
+        }
+        const int32_t movers = list_movers(s);
+        for (int32_t i = 0; i < movers; i++) {
+            move_chart(s, s->order[i]);
+        }
+    }
+    return false;
+}
+
+/* Every chart where it stood, as far as the page allows. false: one is larger than the page. */
+static bool take_places(separation *s, const sl_pose *pose)
+{
+    const int32_t page[2] = {s->sheet.width, s->sheet.height};
+    for (int32_t c = 0; c < s->task->count; c++) {
+        const sl_mask *mask = mask_at(s, c, 0);
+        const int32_t size[2] = {mask->width, mask->height};
+        int32_t at[2];
+        if (mask->width == 0) {
+            return false;
+        }
+        for (int i = 0; i < 2; i++) {
+            at[i] = (int32_t)floor(pose[c].at[i] / s->sheet.cell - mask->origin[i] + 0.5);
+            at[i] = at[i] < 0 ? 0 : at[i] + size[i] > page[i] ? page[i] - size[i] : at[i];
+        }
+        s->spot[c] = (sl_spot){pose[c].page, 0, at[0], at[1]};
+    }
+    return true;
+}
+
+static void choose_angles(separation *s, const sl_pose *pose)
+{
+    for (int32_t c = 0; c < s->task->count; c++) {
+        double *angle = s->angle + (int64_t)c * s->turns;
+        for (int32_t t = 0; t < s->turns; t++) {
+            const bool free = s->def->rotations == SL_ROTATE_FREE;
+            angle[t] = pose[c].angle;
+            if (free && t < NEAR_TURNS) {
+                angle[t] += jitter[t];
+            } else if (!free || t < NEAR_TURNS + 3) {
+                angle[t] += half_pi * (free ? t - NEAR_TURNS + 1 : t);
+            } else {
+                angle[t] = 4.0 * half_pi * sl_rng_uniform(&s->rng);
+            }
+        }
+    }
+}
+
+static sl_status try_scale(separation *s, double scale, sl_arrangement *best, bool *fits)
+{
+    sl_status status = SL_OK;
+    choose_angles(s, best->pose);
+    SL_TRY(sl_sheet_init(s->task, scale, s->def->grid, s->turns, s->angle, &s->sheet));
+    if (s->def->far) {
+        SL_TRY(sl_sheet_init(s->task, scale, s->def->grid / COARSE, s->turns, s->angle, &s->coarse));
+    }
+    *fits = take_places(s, best->pose) && push_apart(s);
+    if (*fits) {
+        best->scale = scale;
+        sl_pose_from_spots(&s->sheet, s->spot, best->pose);
+    }
+cleanup:
+    sl_sheet_clear(&s->sheet);
+    sl_sheet_clear(&s->coarse);
+    return status;
+}
+
+static void separation_clear(separation *s)
+{
+    sl_free(s->angle);
+    sl_free(s->spot);
+    sl_free(s->weight);
+    sl_free(s->overlap);
+    sl_free(s->owner);
+    sl_free(s->order);
+    sl_free(s->line);
+    sl_field_clear(&s->near);
+    sl_field_clear(&s->far);
+    sl_field_clear(&s->far_coarse);
+}
+
+static sl_status separation_init(separation *s)
+{
+    const int32_t n = s->task->count, grid = s->def->grid;
+    const int32_t rows = (int32_t)ceil(s->task->height / s->task->width * grid) + 1;
+    sl_status status = SL_OK;
+    if (s->def->rotations == SL_ROTATE_FREE) {
+        s->turns = s->def->far ? FAR_TURNS : NEAR_TURNS;
+    } else {
+        s->turns = s->def->far && s->def->rotations == SL_ROTATE_RIGHT ? 4 : 1;
+    }
+    s->rng = sl_rng_seed(s->def->seed);
+    s->angle = sl_alloc((int64_t)n * s->turns, sizeof *s->angle);
+    s->spot = sl_alloc(n, sizeof *s->spot);
+    s->weight = sl_alloc((int64_t)n * n, sizeof *s->weight);
+    s->overlap = sl_alloc((int64_t)n * n, sizeof *s->overlap);
+    s->owner = sl_alloc((int64_t)grid * rows, sizeof *s->owner);
+    s->order = sl_alloc(n, sizeof *s->order);
+    s->line = sl_alloc(grid + 1, sizeof *s->line);
+    if (s->angle == NULL || s->spot == NULL || s->weight == NULL || s->overlap == NULL || s->owner == NULL ||
+        s->order == NULL || s->line == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    SL_TRY(sl_field_init(grid, rows, &s->near));
+    SL_TRY(sl_field_init(s->def->far ? grid : 1, s->def->far ? rows : 1, &s->far));
+    SL_TRY(sl_field_init(grid / COARSE, rows / COARSE, &s->far_coarse));
+cleanup:
+    return status;
+}
+
+sl_status sl_separate(const sl_pack_task *task, const sl_separate_def *def, sl_arrangement *best, int32_t *attempts)
+{
+    separation s = {.task = task, .def = def};
+    sl_status status = SL_OK;
+    double step = def->step;
+    SL_TRY(separation_init(&s));
+    for (int32_t given_up = 0, k = 0; given_up <= def->halvings && k < MAX_SCALES; k++) {
+        bool fits = false;
+        SL_TRY(try_scale(&s, best->scale * (1.0 + step), best, &fits));
+        ++*attempts;
+        if (!fits) {
+            step *= 0.5;
+            given_up++;
+        }
+    }
+cleanup:
+    separation_clear(&s);
+    return status;
+}
