@@ -43,8 +43,8 @@ SL_NODISCARD sl_status sl_frame_set_uv(sl_frame *frame, const double *corner_uv)
 void sl_frame_set_positions(sl_frame *frame, const double *xyz);
 
 /* Lines along pairs of vertices, drawn antialiased over the surface where it does not hide them; copied. layer: 0 to 7,
- * higher ones over lower. width in pixels, (0, 64]. count 0 removes the layer. A line with an end behind the near plane
- * is left out. SL_BAD_INPUT, SL_OUT_OF_MEMORY. */
+ * higher ones over lower. width in pixels, (0, 64]. count 0 removes the layer. Lines are clipped
+ * at the near plane; one with an end that is not finite is left out. SL_BAD_INPUT, SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_frame_set_lines(sl_frame *frame, int32_t layer, int32_t count, const int32_t *vertex_pairs,
                                           const uint8_t rgb[3], double width);
 

@@ -31,15 +31,15 @@
 #endif
 
 /* sRGB's curve is (1 + 0.055) light^(1/2.4) - 0.055 but for its darkest colours, so a byte under less light is
- * (byte + 14.03) power - 14.03 with power = light^(1/2.4), for all three channels alike. Bytes in 1/128, 14.03 as 1795;
- * power in 1/65536, below 65536. */
+ * (byte + 14.03) power - 14.03 with power = light^(1/2.4), for all three channels alike; the fourth byte becomes 255.
+ * Bytes in 1/128, 14.03 as 1795; power in 1/65536, below 65536. */
 enum { TINT_BITS = 7, TINT_TOE = 1795 };
 
 static inline uint32_t tint(uint32_t color, uint32_t power)
 {
     const uint32_t rest = TINT_TOE - (1u << (TINT_BITS - 1));
-    uint32_t tinted = 0;
-    for (int bit = 0; bit < 32; bit += 8) {
+    uint32_t tinted = 0xff000000u;
+    for (int bit = 0; bit < 24; bit += 8) {
         const uint32_t value = ((((color >> bit) & 0xffu) << TINT_BITS) + TINT_TOE) * power >> 16;
         tinted |= (value > rest ? value - rest : 0u) >> TINT_BITS << bit;
     }

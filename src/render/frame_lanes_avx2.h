@@ -192,7 +192,7 @@ LANES_CALL i8 i8_tint(i8 color, i8 power)
     hi = _mm256_mulhi_epu16(_mm256_add_epi16(hi, toe), _mm256_unpackhi_epi32(twice, twice));
     lo = _mm256_srli_epi16(_mm256_subs_epu16(lo, rest), TINT_BITS);
     hi = _mm256_srli_epi16(_mm256_subs_epu16(hi, rest), TINT_BITS);
-    return _mm256_packus_epi16(lo, hi);
+    return _mm256_or_si256(_mm256_packus_epi16(lo, hi), _mm256_set1_epi32((int32_t)0xff000000u));
 }
 
 /* Halves of the registers hold rows k and k + 4, so that four-word transposes within halves are all it takes. */

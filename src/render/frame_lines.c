@@ -1,9 +1,12 @@
 /* Antialiased lines over a band of rows, hidden where the surface is nearer. */
 #include "render/frame_internal.h"
 
+#include <float.h>
 #include <math.h>
 
 static const double depth_slack = 3e-4; /* of the key's range: snapped corners leave the plane by less */
+
+static const double line_guard = 128.0; /* pixels beside the picture that clipped lines may reach */
 
 /* A line on the picture, in pixels relative to pixel centres. */
 typedef struct stroke {
@@ -82,22 +85,86 @@ static void draw_stroke(const sl_frame *f, const stroke *s, int32_t row, int32_t
     }
 }
 
+/* Keeps of [*from, *to] what is not below 0 of a function that is d0 at 0 and d1 at 1, and linear between. */
+static void cut(double d0, double d1, double *from, double *to)
+{
+    if (d0 < 0.0 && d1 < 0.0) {
+        *to = -1.0;
+    } else if (d0 < 0.0) {
+        *from = fmax(*from, d0 / (d0 - d1));
+    } else if (d1 < 0.0) {
+        *to = fmin(*to, d0 / (d0 - d1));
+    }
+}
+
+/* A line with an end off the picture's plane: what is in front of the near plane and near the picture. */
+static bool clip_line(const sl_frame *f, int32_t v, int32_t w, stroke *s)
+{
+    const sl_camera *c = &f->camera;
+    const double size[2] = {f->width, f->height}, scale = f->height * c->focal;
+    double p[2][3], from = 0.0, to = 1.0;
+    sl_camera_to_eye(c, f->xyz + 3 * (int64_t)v, p[0]);
+    sl_camera_to_eye(c, f->xyz + 3 * (int64_t)w, p[1]);
+    for (int i = 0; i < 2; i++) {
+        if (!(fabs(p[i][0]) + fabs(p[i][1]) + fabs(p[i][2]) < DBL_MAX)) {
+            return false;
+        }
+    }
+    if (c->perspective) {
+        cut(p[0][2] - c->near_depth, p[1][2] - c->near_depth, &from, &to);
+    }
+    for (int axis = 0; axis < 2; axis++) { /* both conditions times the depth, which makes them linear */
+        const double before = c->centre[axis] * size[axis] + line_guard, after = size[axis] + 2.0 * line_guard - before;
+        const double sign = axis == 0 ? scale : -scale;
+        const double z0 = c->perspective ? p[0][2] : 1.0, z1 = c->perspective ? p[1][2] : 1.0;
+        cut(before * z0 + sign * p[0][axis], before * z1 + sign * p[1][axis], &from, &to);
+        cut(after * z0 - sign * p[0][axis], after * z1 - sign * p[1][axis], &from, &to);
+    }
+    for (int i = 0; i < 2 && from < to; i++) {
+        const double at = i == 0 ? from : to;
+        double eye[3], *end = i == 0 ? s->a : s->b;
+        for (int k = 0; k < 3; k++) {
+            eye[k] = p[0][k] + at * (p[1][k] - p[0][k]);
+        }
+        sl_camera_project(c, f->width, f->height, eye, end);
+        end[0] -= 0.5;
+        end[1] -= 0.5;
+        s->key[i] = f->key_offset + f->key_scale * (c->perspective ? 1.0 / eye[2] : eye[2]);
+    }
+    const double reach = from < to ? fabs(s->a[0]) + fabs(s->a[1]) + fabs(s->b[0]) + fabs(s->b[1]) : INFINITY;
+    return reach < SL_FRAME_FARTHEST; /* rounding may have spoilt it: false for NaN, too */
+}
+
+static bool find_line(const sl_frame *f, int32_t v, int32_t w, int32_t row, int32_t row_end, stroke *s)
+{
+    const sl_frame_vertex *a = &f->vertex[v], *b = &f->vertex[w];
+    if (a->x == SL_FRAME_FAR || b->x == SL_FRAME_FAR) {
+        return clip_line(f, v, w, s);
+    }
+    const int32_t reach = (int32_t)(SL_SUBPIXELS * (1.5 * (s->half + 0.5) + 1.0)); /* more than draw_stroke's */
+    const int32_t lo = SL_SUBPIXELS * row - reach, hi = SL_SUBPIXELS * row_end + reach;
+    if ((a->y < lo && b->y < lo) || (a->y > hi && b->y > hi)) {
+        return false;
+    }
+    for (int i = 0; i < 2; i++) {
+        const sl_frame_vertex *end = i == 0 ? a : b;
+        double *at = i == 0 ? s->a : s->b;
+        at[0] = (double)end->x / SL_SUBPIXELS;
+        at[1] = (double)end->y / SL_SUBPIXELS;
+        s->key[i] = (double)end->key;
+    }
+    return true;
+}
+
 void sl_frame_draw_lines(const sl_frame *f, int32_t row, int32_t row_end, uint8_t *rgba)
 {
     for (int layer = 0; layer < SL_FRAME_LAYERS; layer++) {
         const sl_frame_lines *lines = &f->lines[layer];
-        for (int32_t i = 0; i < lines->count; i++) {
-            const sl_frame_vertex *a = &f->vertex[lines->pair[2 * (int64_t)i]],
-                                  *b = &f->vertex[lines->pair[2 * (int64_t)i + 1]];
-            if (a->x == SL_FRAME_FAR || b->x == SL_FRAME_FAR) {
-                continue;
+        for (int64_t i = 0; i < lines->count; i++) {
+            stroke s = {.half = 0.5 * lines->width, .rgb = lines->rgb};
+            if (find_line(f, lines->pair[2 * i], lines->pair[2 * i + 1], row, row_end, &s)) {
+                draw_stroke(f, &s, row, row_end, rgba);
             }
-            const stroke s = {{(double)a->x / SL_SUBPIXELS, (double)a->y / SL_SUBPIXELS},
-                              {(double)b->x / SL_SUBPIXELS, (double)b->y / SL_SUBPIXELS},
-                              {(double)a->key, (double)b->key},
-                              0.5 * lines->width,
-                              lines->rgb};
-            draw_stroke(f, &s, row, row_end, rgba);
         }
     }
 }

@@ -1,52 +1,4 @@
-#include "render/render_support.h"
-
-#include "render/frame.h"
-
-enum { SIDE = 150 };
-
-/* A frame of the torus with colours and UVs. */
-typedef struct torus_frame {
-    sl_mesh *mesh;
-    sl_triangulation *triangulation;
-    int32_t *tri;
-    double *uv;
-    uint8_t *rgb;
-    sl_frame *frame;
-    sl_camera camera;
-} torus_frame;
-
-static torus_frame open_torus(double azimuth)
-{
-    torus_frame t = {.mesh = torus(40, 23)};
-    assert_int_equal(sl_triangulation_create(t.mesh, &t.triangulation), SL_OK);
-    const int32_t nt = t.triangulation->nt;
-    t.tri = sl_alloc(nt, 3 * sizeof *t.tri);
-    t.uv = sl_alloc(nt, 6 * sizeof *t.uv);
-    t.rgb = sl_alloc(nt, 3);
-    for (int32_t i = 0; i < 3 * nt; i++) {
-        const double *p = t.mesh->xyz + 3 * t.mesh->origin[t.triangulation->corner[i]];
-        t.tri[i] = t.mesh->origin[t.triangulation->corner[i]];
-        t.uv[2 * i] = 0.4 * p[0] + 0.3 * p[1];
-        t.uv[2 * i + 1] = 0.5 * p[2] - 0.2 * p[1];
-        t.rgb[i] = (uint8_t)(90 + 37 * i % 130);
-    }
-    const sl_frame_def def = {t.mesh->nv, nt, t.mesh->xyz, t.tri, t.uv, t.rgb};
-    assert_int_equal(sl_frame_create(&def, &t.frame), SL_OK);
-    sl_view view = sl_view_default();
-    view.azimuth = azimuth;
-    assert_int_equal(sl_camera_frame(&view, 1.3, t.mesh->nv, NULL, t.mesh->xyz, &t.camera), SL_OK);
-    return t;
-}
-
-static void close_torus(torus_frame *t)
-{
-    sl_frame_free(t->frame);
-    sl_free(t->tri);
-    sl_free(t->uv);
-    sl_free(t->rgb);
-    sl_triangulation_free(t->triangulation);
-    sl_mesh_free(t->mesh);
-}
+#include "render/frame_support.h"
 
 /* Nearest triangle by the ray through a pixel's centre; -2 where an edge is so near that rounding decides. */
 static int32_t trace(const torus_frame *t, int32_t width, int32_t height, int32_t x, int32_t y, double bary[3])
@@ -256,6 +208,82 @@ static void lines_are_hidden_by_what_is_nearer(void **state)
     sl_frame_free(frame);
 }
 
+/* The picture of a segment in front of the near plane, in pixels relative to pixel centres; the ends in either order.
+ */
+static bool project_segment(const sl_camera *camera, int32_t side, const double p[3], const double q[3],
+                            double end[2][2])
+{
+    double eye[2][3];
+    sl_camera_to_eye(camera, p, eye[0]);
+    sl_camera_to_eye(camera, q, eye[1]);
+    const int behind = eye[0][2] < eye[1][2] ? 0 : 1, front = 1 - behind;
+    if (eye[front][2] < camera->near_depth) {
+        return false;
+    }
+    if (eye[behind][2] < camera->near_depth) {
+        const double part = (camera->near_depth - eye[front][2]) / (eye[behind][2] - eye[front][2]);
+        for (int k = 0; k < 3; k++) {
+            eye[behind][k] = eye[front][k] + part * (eye[behind][k] - eye[front][k]);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        sl_camera_project(camera, side, side, eye[i], end[i]);
+        end[i][0] -= 0.5;
+        end[i][1] -= 0.5;
+    }
+    return true;
+}
+
+static double distance_to_segment(double x, double y, double end[2][2])
+{
+    const double dx = end[1][0] - end[0][0], dy = end[1][1] - end[0][1];
+    const double part = ((x - end[0][0]) * dx + (y - end[0][1]) * dy) / (dx * dx + dy * dy);
+    const double at = fmin(fmax(part, 0.0), 1.0);
+    return hypot(x - end[0][0] - at * dx, y - end[0][1] - at * dy);
+}
+
+/* Every pixel of the line and no other is inked, wherever its ends are: behind the eye, beside the picture. */
+static void lines_are_clipped_at_the_near_plane(void **state)
+{
+    (void)state;
+    static const int32_t pair[] = {0, 1};
+    static const uint8_t ink[3] = {0, 0, 0};
+    test_rng rng = test_rng_seed(0x11e5);
+    uint8_t *rgba = sl_alloc(SIDE * SIDE, 4);
+    int32_t crossing = 0, inked = 0;
+    for (int trial = 0; trial < 150 * test_multiplier(); trial++) {
+        double xyz[6], end[2][2] = {{0.0}};
+        for (int k = 0; k < 6; k++) {
+            xyz[k] = test_uniform(&rng, -1.0, 1.0) * (trial % 5 == 0 ? 1e4 : 1.0);
+        }
+        sl_camera camera = {.eye = {0.1, -0.2, 0.3},
+                            .right = {0.6, 0.0, 0.8},
+                            .up = {0.0, 1.0, 0.0},
+                            .forward = {0.8, 0.0, -0.6},
+                            .centre = {0.5, 0.47},
+                            .focal = 0.9,
+                            .near_depth = trial % 2 == 0 ? 0.05 : 1e-9,
+                            .perspective = true};
+        sl_frame *frame = NULL;
+        const sl_frame_def def = {2, 0, xyz, NULL, NULL, NULL};
+        const sl_frame_style style = sl_frame_style_default();
+        assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+        assert_int_equal(sl_frame_set_lines(frame, 0, 1, pair, ink, 2.0), SL_OK);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, SIDE, SIDE, NULL, rgba), SL_OK);
+        const bool shown = project_segment(&camera, SIDE, xyz, xyz + 3, end);
+        for (int32_t i = 0; i < SIDE * SIDE; i++) {
+            const double distance = shown ? distance_to_segment(i % SIDE, i / SIDE, end) : INFINITY;
+            assert_true(distance > 0.55 || rgba[4 * i] < 20);
+            assert_true(distance < 1.6 || rgba[4 * i] == 246);
+            inked += rgba[4 * i] < 20;
+        }
+        crossing += shown && fabs(end[0][0]) + fabs(end[0][1]) + fabs(end[1][0]) + fabs(end[1][1]) > 1e6;
+        sl_frame_free(frame);
+    }
+    assert_true(crossing > 10 && inked > 1000);
+    sl_free(rgba);
+}
+
 static void strange_numbers_and_sizes_behave(void **state)
 {
     (void)state;
@@ -331,6 +359,7 @@ int main(void)
         cmocka_unit_test(from_inside_of_a_cube_every_pixel_shows_a_wall),
         cmocka_unit_test(culling_changes_no_pixel_of_a_closed_surface),
         cmocka_unit_test(lines_are_hidden_by_what_is_nearer),
+        cmocka_unit_test(lines_are_clipped_at_the_near_plane),
         cmocka_unit_test(strange_numbers_and_sizes_behave),
         cmocka_unit_test(arguments_out_of_range_are_refused),
     };
