@@ -99,7 +99,7 @@ SL_NODISCARD sl_status sl_stretch_minimise(const sl_patch *patch, const sl_stret
 
 /* The same without a start: a coarse mesh of the chart (a disk) is embedded by Tutte's method and minimised, then the
  * other vertices are put back a level at a time, each where its triangles stretch least, and every level is minimised.
- * Charts of fewer than 200 triangles, and those where a level fails, start from Tutte's embedding of the whole. With a
+ * Charts of fewer than 100 triangles, and those where a level fails, start from Tutte's embedding of the whole. With a
  * target_l2 and a hopeless_gain a chart is hopeless, too, when its last coarse level is far from the target. uv: out.
  * SL_INFEASIBLE (no disk), SL_BAD_INPUT (doubles have no embedding without flips), SL_SINGULAR, SL_CANCELLED,
  * SL_OUT_OF_MEMORY: uv and info (nullable) are unchanged then. Deterministic.

@@ -9,8 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double LEVEL_SHARE = 0.25;     /* triangles of a level, of those of the finer one */
-static const int32_t LEAST = 200;           /* triangles: no coarser level than this */
+static const double LEVEL_SHARE = 0.25; /* triangles of a level, of those of the finer one */
+static const int32_t LEAST = 200;       /* triangles: no coarser level than this, */
+static const int32_t LEAST_OF_SMALL =
+    50; /* or of charts of fewer than twice that many than half of theirs, nor than this */
 static const double COARSE_DECREASE = 1e-2; /* relative_decrease on the coarse levels */
 
 static const double SINGULAR = 20.0; /* energy a unit of area of the star of a vertex */
@@ -312,6 +314,14 @@ static sl_status unfold(descent *d, double *other, const double **best, sl_stret
     return is_no_map(status) ? SL_OK : status;
 }
 
+/* Even small charts need a coarse level where they have limbs: of 100 with seven limbs each, 9 end far from their
+ * minimum when they start from Tutte's embedding. */
+static int32_t least_of(int32_t nt)
+{
+    const int32_t half = nt / 2 > LEAST_OF_SMALL ? nt / 2 : LEAST_OF_SMALL;
+    return half < LEAST ? half : LEAST;
+}
+
 sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, const sl_context *context, double *uv,
                             sl_stretch_info *info)
 {
@@ -323,7 +333,7 @@ sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, co
     if (!sl_patch_is_disk(patch)) {
         return SL_INFEASIBLE;
     }
-    SL_TRY(sl_levels_create(patch, LEVEL_SHARE, LEAST, &d.levels));
+    SL_TRY(sl_levels_create(patch, LEVEL_SHARE, least_of(patch->nt), &d.levels));
     d.uv = sl_alloc(patch->nv, 2 * sizeof *d.uv);
     d.next = sl_alloc(patch->nv, sizeof *d.next);
     other = sl_alloc(patch->nv, 2 * sizeof *other);

@@ -363,8 +363,8 @@ static void long_limbs_are_unrolled_from_tutte(void **state)
 }
 
 /* Several slender limbs at once: plain Newton steps are stopped by one limb or another, and leave energies of 1e5 and
- * more in half of such charts. Which of them still end far off depends on the last bits: 0 and 6 of these 24 as two
- * compilers evaluate them. From coarse meshes none does: test_stretch_levels.c. */
+ * more in half of such charts; of a hundred that begin with Tutte's embedding nine still end far off, of these 24 none.
+ * From coarse meshes none does: test_stretch_levels.c. */
 static void charts_with_many_limbs_come_near_their_minimum(void **state)
 {
     (void)state;
@@ -380,7 +380,7 @@ static void charts_with_many_limbs_come_near_their_minimum(void **state)
         free(uv);
         sl_patch_free(patch);
     }
-    assert_true(far <= 8);
+    assert_true(far <= 1);
 }
 
 /* A needle's least energy is 170: still recognised as the end, though every map of it counts as far. */

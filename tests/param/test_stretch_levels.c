@@ -236,13 +236,12 @@ static void unfolding_ends_where_minimising_does(void **state)
     assert_true(through < direct);
 }
 
-/* The charts on which a third of the starts from Tutte's embedding end far off. By the last bits, which differ between
- * compilers, a few may still. */
+/* Of a hundred such charts nine end far from their minimum when they start from Tutte's embedding. */
 static void charts_with_many_limbs_are_unfolded(void **state)
 {
     (void)state;
     int32_t far_off = 0;
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    for (uint64_t seed = 0; seed < 60; seed++) {
         sl_patch *patch = chart_limbs(3, 7, 9, seed);
         double *uv = uv_alloc(patch);
         const sl_stretch_def def = sl_stretch_default();
@@ -253,7 +252,7 @@ static void charts_with_many_limbs_are_unfolded(void **state)
         free(uv);
         sl_patch_free(patch);
     }
-    assert_true(far_off <= 6);
+    assert_true(far_off <= 1);
 }
 
 /* Border vertices that come back may not cross others: ramps of more than a turn, limbs, random disks. */
