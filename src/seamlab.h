@@ -11,6 +11,8 @@
 #include "base/rng.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "edit/picture.h"
+#include "edit/script.h"
 #include "eigen/band.h"
 #include "eigen/lanczos.h"
 #include "geom/hull.h"

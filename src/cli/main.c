@@ -14,6 +14,8 @@ typedef struct verb_entry {
 
 static const verb_entry verbs[] = {
     {"unwrap", cli_unwrap, "cut, flatten and pack a mesh: UVs, a sidecar, pictures"},
+    {"edit", cli_edit, "an atlas edited by a script: cut, sew, straighten, angles, symmetry, packing"},
+    {"replay", cli_replay, "an editing session's log again, step by step: the same bytes"},
     {"measure", cli_measure, "charts, seams, distortion, overlap and fill of any mesh with UVs"},
     {"compare", cli_compare, "several atlases, whatever tool made them, by the same measures, with pictures"},
     {"overlap", cli_overlap, "do the UVs of a mesh overlap, and where: by texels, or exactly"},

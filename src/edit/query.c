@@ -109,6 +109,46 @@ void sl_session_constraint_at(const sl_session *s, int32_t index, sl_session_con
     memcpy(out->uv, w->uv, sizeof out->uv);
 }
 
+/* The edge between the vertices of two corners of a chart, -1 = none: looked for in the fan of the first. */
+static int32_t edge_between(const sl_mesh *mesh, int32_t a, int32_t b)
+{
+    int32_t g = a;
+    while (mesh->twin[g] >= 0) { /* clockwise to the border, or once round */
+        g = sl_next(mesh, mesh->twin[g]);
+        if (g == a) {
+            break;
+        }
+    }
+    const int32_t start = g;
+    do {
+        if (sl_target(mesh, g) == mesh->origin[b]) {
+            return g;
+        }
+        if (mesh->origin[sl_prev(mesh, g)] == mesh->origin[b]) {
+            return sl_prev(mesh, g);
+        }
+        g = mesh->twin[sl_prev(mesh, g)];
+    } while (g >= 0 && g != start);
+    return -1;
+}
+
+sl_status sl_session_constraint_edges(const sl_session *s, int32_t index, int32_t **halfedge, int32_t *count)
+{
+    const sl_edit_wish *w = s->wishes->wish[index];
+    *count = 0;
+    *halfedge = sl_alloc(w->count, sizeof **halfedge);
+    if (*halfedge == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t k = 0; k + 1 < w->count && w->kind == SL_ACTION_STRAIGHTEN; k++) {
+        const int32_t h = edge_between(s->mesh, w->corner[k], w->corner[k + 1]);
+        if (h >= 0) {
+            (*halfedge)[(*count)++] = h;
+        }
+    }
+    return SL_OK;
+}
+
 const int32_t *sl_session_changed(const sl_session *s, int32_t *count)
 {
     *count = s->changes;

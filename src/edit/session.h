@@ -93,6 +93,11 @@ typedef struct sl_session_constraint {
 int32_t sl_session_constraints(const sl_session *session);
 void sl_session_constraint_at(const sl_session *session, int32_t index, sl_session_constraint *out);
 
+/* The edges of a path that is straight: mesh halfedges in order, one an edge; none for other kinds. *halfedge owned by
+ * the caller (sl_free). SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_session_constraint_edges(const sl_session *session, int32_t index, int32_t **halfedge,
+                                                   int32_t *count);
+
 /* What the last change (action, undo, drag) did: slots that are not what they were, and sentences for the user:
  * constraints that could not survive, charts laid flat by a fallback, copies that share no more. */
 const int32_t *sl_session_changed(const sl_session *session, int32_t *count);
