@@ -13,8 +13,9 @@ static const double NEGLIGIBLE = 1e-2;    /* of the decrease asked for */
 static const double LARGE_SCALE = 0x1p40; /* what is left of the energy at this scale is its quadratic part */
 static const double LONGER =
     1.15; /* steps are doubled where the energy along them looks least beyond so many lengths */
-static const int MAX_HALVINGS = 40;  /* of a step: 1e-12 of the first trial */
-static const int MAX_DOUBLINGS = 10; /* of a full step */
+static const double PIN_GROWTH = 1.01; /* of the energy, when pins go the last bit of their way */
+static const int MAX_HALVINGS = 40;    /* of a step: 1e-12 of the first trial */
+static const int MAX_DOUBLINGS = 10;   /* of a full step */
 
 /* Far from the minimum (4 is isometric) a plain Newton step is stopped short by a few triangles that would flip; the
  * softened one is not. The two take turns by what the last step gained. */
@@ -43,6 +44,15 @@ struct sl_stretch {
 sl_stretch_def sl_stretch_default(void)
 {
     return (sl_stretch_def){.w = 0.0, .max_iterations = 60, .relative_decrease = 1e-4, .hopeless_after = 15};
+}
+
+/* With the springs of the pins. */
+static sl_stretch_sums measure(const sl_stretch *s, const double *uv)
+{
+    const sl_stretch_rest *rest = &s->store->rest;
+    sl_stretch_sums sums = sl_stretch_measure(rest, s->patch->tri, s->def.w, uv);
+    sums.energy += sl_stretch_pull_energy(&s->def, rest->total, uv);
+    return sums;
 }
 
 static bool all_positive(const sl_patch *patch, const double *uv)
@@ -112,6 +122,20 @@ static double best_scale(const sl_stretch *s, double energy)
     return exp2(round(0.25 * log2(inverse / quadratic)));
 }
 
+/* The energy without the springs. */
+static double stretch_of(const sl_stretch *s, const double *uv, sl_stretch_sums sums)
+{
+    return sums.energy - sl_stretch_pull_energy(&s->def, s->store->rest.total, uv);
+}
+
+/* What is known of the map in s->uv. */
+static void take_stock(sl_stretch *s, sl_stretch_sums sums)
+{
+    s->info.energy_after = stretch_of(s, s->uv, sums);
+    s->info.l2 = sums.l2;
+    s->info.pin_distance = sl_stretch_pull_distance(&s->def, s->uv);
+}
+
 static sl_status start(sl_stretch *s, const double *uv)
 {
     const int64_t count = 2 * (int64_t)s->patch->nv;
@@ -119,7 +143,7 @@ static sl_status start(sl_stretch *s, const double *uv)
         return SL_BAD_INPUT;
     }
     memcpy(s->uv, uv, (size_t)count * sizeof *uv);
-    sl_stretch_sums sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->uv);
+    sl_stretch_sums sums = measure(s, s->uv);
     if (!isfinite(sums.energy)) {
         return SL_BAD_INPUT;
     }
@@ -128,8 +152,8 @@ static sl_status start(sl_stretch *s, const double *uv)
     if (status != SL_OK || !simple) {
         return status != SL_OK ? status : SL_BAD_INPUT;
     }
-    s->info.energy_before = sums.energy;
-    s->done = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
+    s->info.energy_before = stretch_of(s, s->uv, sums);
+    s->done = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2 && s->def.pin_count == 0;
     s->info.converged = s->done;
     const bool scales = !s->done && !sl_stretch_holds_places(s->patch, &s->def);
     const double scale = scales ? best_scale(s, sums.energy) : 1.0;
@@ -137,13 +161,12 @@ static sl_status start(sl_stretch *s, const double *uv)
         for (int64_t i = 0; i < count; i++) {
             s->uv[i] *= scale;
         }
-        sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->uv);
+        sums = measure(s, s->uv);
     }
     s->energy = sums.energy;
-    s->softened = sums.energy > FAR_ENERGY;
+    take_stock(s, sums);
+    s->softened = s->info.energy_after > FAR_ENERGY;
     s->soft_gain = 1.0;
-    s->info.energy_after = sums.energy;
-    s->info.l2 = sums.l2;
     return SL_OK;
 }
 
@@ -186,6 +209,7 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     SL_TRY(sl_stretch_rest_init(patch, &s->store->rest));
     SL_TRY(start(s, uv));
     SL_TRY(sl_stretch_freedom_init(patch, def, uv, &s->freedom));
+    SL_TRY(sl_stretch_pull_is_valid(def, &s->freedom) ? SL_OK : SL_BAD_INPUT);
     *out = s;
     s = NULL;
 cleanup:
@@ -200,7 +224,7 @@ static sl_status try_length(sl_stretch *s, double length, double slope, bool *ac
     for (int64_t i = 0; i < 2 * (int64_t)s->patch->nv; i++) {
         s->trial[i] = s->uv[i] + length * s->direction[i];
     }
-    *sums = sl_stretch_measure(&s->store->rest, s->patch->tri, s->def.w, s->trial);
+    *sums = measure(s, s->trial);
     if (!(sums->energy <= s->energy + ARMIJO * length * slope) || (!sums->sure && !all_positive(s->patch, s->trial))) {
         return SL_OK;
     }
@@ -272,6 +296,7 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
     sl_stretch_system *system = &s->store->system;
     sl_stretch_assemble(s->patch, &s->store->rest, &s->freedom, s->def.w, softened ? SOFT_CAP : INFINITY, s->uv, system,
                         s->gradient, s->force);
+    sl_stretch_pull_assemble(&s->def, s->store->rest.total, &s->freedom, s->uv, system, s->gradient, s->force);
     const sl_status status = sl_stretch_direction(&s->freedom, system, s->force, s->direction);
     if (status != SL_OK) {
         return status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
@@ -305,16 +330,16 @@ static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
     const double gain = (s->energy - sums.energy) / s->energy;
     swap(&s->uv, &s->trial);
     s->energy = sums.energy;
-    s->softened = sums.energy > FAR_ENERGY && (softened ? gain >= SOFT_GAIN : gain < PLAIN_GAIN);
-    s->info.energy_after = sums.energy;
-    s->info.l2 = sums.l2;
+    take_stock(s, sums);
+    const bool far = s->info.energy_after > FAR_ENERGY;
+    s->softened = far && (softened ? gain >= SOFT_GAIN : gain < PLAIN_GAIN);
     s->info.iterations++;
     if (softened) {
         s->soft_gain = gain;
     }
     /* Far from the minimum a small gain says something only if neither kind of step gained more. */
-    const double recent = softened ? 1.0 : sums.energy > FAR_ENERGY ? fmax(gain, s->soft_gain) : gain;
-    const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2;
+    const double recent = softened ? 1.0 : far ? fmax(gain, s->soft_gain) : gain;
+    const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2 && s->def.pin_count == 0;
     s->info.converged = reached || recent < s->def.relative_decrease;
     s->info.hopeless = !s->info.converged && is_hopeless(s, recent);
     s->done = s->info.converged || s->info.hopeless;
@@ -338,6 +363,27 @@ static sl_status newton_step(sl_stretch *s)
     return status;
 }
 
+/* Pins that the springs have brought next to their places go there, if nothing flips. */
+static sl_status set_pins(sl_stretch *s)
+{
+    bool simple = false;
+    memcpy(s->trial, s->uv, 2 * (size_t)s->patch->nv * sizeof *s->trial);
+    for (int32_t i = 0; i < s->def.pin_count; i++) {
+        memcpy(&s->trial[2 * (int64_t)s->def.pin[i].vertex], s->def.pin[i].uv, 2 * sizeof *s->trial);
+    }
+    const sl_stretch_sums sums = measure(s, s->trial);
+    if (!isfinite(sums.energy) || sums.energy > PIN_GROWTH * s->energy || !all_positive(s->patch, s->trial)) {
+        return SL_OK;
+    }
+    const sl_status status = border_is_simple(s, s->trial, &simple);
+    if (status == SL_OK && simple) {
+        swap(&s->uv, &s->trial);
+        s->energy = sums.energy;
+        take_stock(s, sums);
+    }
+    return status;
+}
+
 sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
 {
     for (int32_t i = 0; i < n && !s->done && s->info.iterations < s->def.max_iterations; i++) {
@@ -349,6 +395,9 @@ sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
         }
         if (status == SL_OK) {
             status = newton_step(s);
+        }
+        if (status == SL_OK && s->def.pin_count > 0 && (s->done || s->info.iterations == s->def.max_iterations)) {
+            status = set_pins(s);
         }
         if (status != SL_OK) {
             return status;

@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "mesh/patch.h"
+#include "param/constraints.h"
 
 /* Vertices kept on a straight line. Lines may cross and end on each other, and share vertices with the fixed ones: a
  * line with a fixed vertex is fixed. A vertex on three or more lines stays where it is, and so do they. */
@@ -37,7 +38,11 @@ typedef struct sl_stretch_def {
     const uint8_t *fixed; /* nv: 1 = the vertex stays where it starts; borrowed; default NULL = none. With fixed
                            * vertices or lines the map is not scaled first */
     int32_t line_count;   /* default 0 */
-    const sl_stretch_line *line;     /* line_count; borrowed until create returns */
+    const sl_stretch_line *line; /* line_count; borrowed until create returns */
+    int32_t pin_count;           /* default 0 */
+    const sl_pin
+        *pin; /* pin_count vertices, neither fixed nor on lines, that are drawn to places of their own and, once
+               * there, exactly there; the energy may rise on their way. Borrowed while the solver lives */
     sl_stretch_workspace *workspace; /* borrowed while the solver lives; default NULL = everything anew */
 } sl_stretch_def;
 
@@ -47,6 +52,7 @@ typedef struct sl_stretch_info {
     int32_t iterations;
     double energy_before, energy_after; /* divided by the total area: 4 = isometric for w = 0 */
     double l2;                          /* of the result, the chart's best scale */
+    double pin_distance;                /* of the pin furthest from its place [uv units]; 0 = all are there */
     bool converged;                     /* stopped by relative_decrease or target_l2, not by the iteration bound */
     bool hopeless;
     int32_t levels; /* sl_stretch_unfold: coarser meshes that were mapped first */
@@ -55,8 +61,8 @@ typedef struct sl_stretch_info {
 typedef struct sl_stretch sl_stretch; /* opaque: owns the system and its factor; borrows the patch */
 
 /* uv: nv x 2, copied; must have no flipped or zero-area triangle and, with simple_border, a simple border: SL_BAD_INPUT
- * otherwise; SL_OUT_OF_MEMORY. Triangles degenerate in 3D (as distortion.h says) get a raised height as their rest
- * shape and do not count for L2. */
+ * otherwise, and for lines and pins that cannot be kept; SL_OUT_OF_MEMORY. Triangles degenerate in 3D (as distortion.h
+ * says) get a raised height as their rest shape and do not count for L2. */
 SL_NODISCARD sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_stretch_def *def,
                                          sl_stretch **out);
 
@@ -71,7 +77,7 @@ void sl_stretch_workspace_free(sl_stretch_workspace *workspace); /* after its so
 /* Up to n Newton steps: per-triangle Hessians projected by their analytic eigenvalues, Cholesky, step at most 0.9 of
  * the first flip (Smith and Schaefer 2015), Armijo; longer than a full step where that pays. While the map is far from
  * its minimum (energy above 100 a unit of area) the direction is taken from rest shapes softened towards their images
- * (Liu et al. 2018). The energy never rises and no triangle ever flips. SL_CANCELLED, SL_OUT_OF_MEMORY (the
+ * (Liu et al. 2018). Without pins the energy never rises; no triangle ever flips. SL_CANCELLED, SL_OUT_OF_MEMORY (the
  * first step allocates the system, the test of a simple border its grid; nothing else does). */
 SL_NODISCARD sl_status sl_stretch_step(sl_stretch *solver, int32_t n, const sl_context *context);
 

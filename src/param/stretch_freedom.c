@@ -230,5 +230,5 @@ bool sl_stretch_holds_places(const sl_patch *patch, const sl_stretch_def *def)
     for (int32_t l = 0; l < def->line_count; l++) {
         holds = holds || def->line[l].fixed;
     }
-    return holds;
+    return holds || def->pin_count > 0;
 }

@@ -58,6 +58,12 @@ void sl_stretch_freedom_clear(sl_stretch_freedom *freedom);
 /* Does the definition hold anything in place? Then the map may not be scaled. */
 bool sl_stretch_holds_places(const sl_patch *patch, const sl_stretch_def *def);
 
+/* Springs from the pins to their places, energy PULL/2 times the squared distances over the area of the rest shapes.
+ * sl_stretch_pull_is_valid: every pin in range, at a finite place, of a vertex free to move and of no other pin. */
+bool sl_stretch_pull_is_valid(const sl_stretch_def *def, const sl_stretch_freedom *freedom);
+double sl_stretch_pull_energy(const sl_stretch_def *def, double area, const double *uv);
+double sl_stretch_pull_distance(const sl_stretch_def *def, const double *uv); /* the largest */
+
 /* The Newton system: its matrix over the unknowns, lower triangle, and where each triangle's entries go. */
 typedef struct sl_stretch_system {
     sl_csc *H;
@@ -108,6 +114,10 @@ bool sl_stretch_soften(double cap, double J[4], double g[4]);
 void sl_stretch_assemble(const sl_patch *patch, const sl_stretch_rest *rest, const sl_stretch_freedom *freedom,
                          double w, double cap, const double *uv, sl_stretch_system *system, double *gradient,
                          double *force);
+
+/* Adds the springs' part. */
+void sl_stretch_pull_assemble(const sl_stretch_def *def, double area, const sl_stretch_freedom *freedom,
+                              const double *uv, sl_stretch_system *system, double *gradient, double *force);
 
 /* direction (2 nv) = -inv(H + shift diag(H)) force over the unknowns, with the least shift of a short list that can be
  * factored. SL_NOT_POSITIVE_DEFINITE when none can. */
