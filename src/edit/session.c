@@ -106,6 +106,7 @@ void sl_session_free(sl_session *s)
     for (int32_t i = 0; i < s->lines; i++) {
         sl_free(s->line[i]);
     }
+    sl_edit_grip_release(s);
     sl_edit_wishes_release(s->wishes);
     sl_action_clear(&s->open);
     sl_atlas_free(s->base);
@@ -350,6 +351,7 @@ cleanup:
 
 void sl_session_cancel_drag(sl_session *s)
 {
+    sl_edit_grip_release(s);
     if (s->dragging) {
         const sl_status status = sl_change_roll_back(s, true);
         (void)status; /* nothing is allocated that the drag has not allocated before */

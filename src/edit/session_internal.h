@@ -114,6 +114,7 @@ struct sl_session {
     /* the change under way, or a drag's */
     sl_change open_change;
     bool changing, dragging, quick;
+    struct sl_edit_grip *grip; /* of a drag */
     /* what the last change did */
     int32_t *changed;
     int64_t changed_room;
@@ -190,6 +191,18 @@ SL_NODISCARD sl_status sl_edit_solve(sl_session *s, const int32_t *faces, int32_
 /* Do the wishes name vertices of the patch as they should, and does the table follow? */
 SL_NODISCARD sl_status sl_edit_compile(sl_session *s, const sl_patch *patch, int32_t nwish, sl_edit_wish *const *wish,
                                        sl_sector_table *out, sl_diag *diag);
+
+/* Angles that the triangles of the patch have on the page now (3 nt); NaN where a triangle has none. */
+void sl_edit_page_angles(const sl_session *s, const sl_patch *patch, double *angle);
+
+enum { SL_EDIT_QUICK_STEPS = 2 }; /* paper, Sec. 4.2: iterations while the mouse moves */
+
+/* One move of a drag of wishes (grip.c): two Newton steps of the solver kept from the move before. *out = NULL where
+ * they lead to no valid layout. Statuses as of sl_edit_solve. */
+SL_NODISCARD sl_status sl_edit_grip_solve(sl_session *s, const int32_t *faces, int32_t nfaces, int32_t nwish,
+                                          sl_edit_wish *const *wish, const sl_context *context, sl_edit_chart **out,
+                                          sl_diag *diag);
+void sl_edit_grip_release(sl_session *s);
 
 /* --- regrouping (regroup.c) */
 

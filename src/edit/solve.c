@@ -11,10 +11,7 @@
 
 static const double flat_share = 1e-12; /* a chart within this share of its extent from a plane is projected */
 
-enum { QUICK_STEPS = 2 }; /* paper, Sec. 4.2: iterations while the mouse moves */
-
-/* Angles that the triangles of the patch have on the page now; NaN where a triangle has none. */
-static void page_angles(const sl_session *s, const sl_patch *patch, double *angle)
+void sl_edit_page_angles(const sl_session *s, const sl_patch *patch, double *angle)
 {
     for (int32_t t = 0; t < patch->nt; t++) {
         const double *p[3];
@@ -139,7 +136,7 @@ static sl_status solve_quickly(const sl_patch *patch, const sl_abf_def *def, con
     *found = false;
     SL_TRY(sl_abf_create(patch, def, &solver));
     sl_abf_start_from(solver, angle);
-    SL_TRY(sl_abf_step(solver, QUICK_STEPS, context));
+    SL_TRY(sl_abf_step(solver, SL_EDIT_QUICK_STEPS, context));
     flat->abf = *sl_abf_info_of(solver);
     flat->method = SL_FLATTEN_ABF;
     if (flat->abf.min_angle > 0.0) {
@@ -216,7 +213,7 @@ static sl_status solve_patch(sl_session *s, const sl_patch *patch, int32_t nwish
         SL_TRY(sl_edit_compile(s, patch, nwish, wish, &table, diag));
         def.sectors = &table.view;
     }
-    page_angles(s, patch, angle);
+    sl_edit_page_angles(s, patch, angle);
     if (s->quick) {
         status = solve_quickly(patch, &def, angle, context, uv, flat, &found);
         SL_TRY(is_no_answer(status) ? SL_OK : status);
@@ -247,6 +244,15 @@ sl_status sl_edit_solve(sl_session *s, const int32_t *faces, int32_t nfaces, int
     double *uv = NULL;
     sl_flatten_result flat = {.verdict = SL_CHART_VALID, .certificate.first_edge = {-1, -1}};
     *out = NULL;
+    if (s->quick && nwish > 0 && s->open_change.edges == 0) {
+        status = sl_edit_grip_solve(s, faces, nfaces, nwish, wish, context, out, diag);
+        if (*out != NULL || !is_no_answer(status)) {
+            SL_TRY(status);
+        }
+        if (*out != NULL) {
+            goto cleanup;
+        }
+    }
     SL_TRY(sl_patch_extract(s->mesh, s->base->triangulation, faces, nfaces, &patch));
     SL_TRY(require_disk(patch, diag));
     uv = sl_calloc(patch->nv, 2 * sizeof *uv);
