@@ -10,17 +10,19 @@ sl_seam_cost_def sl_seam_cost_default(void)
 {
     return (sl_seam_cost_def){.crease = 0.6,
                               .concavity = 0.4,
+                              .visibility = 0.5,
                               .loops = 0.3,
                               .floor = 0.1,
                               .angle_low = 20.0 * degree,
                               .angle_high = 50.0 * degree,
-                              .reach = 0.02};
+                              .reach = 0.02,
+                              .ambient = sl_ambient_default()};
 }
 
 sl_seam_cost_def sl_seam_cost_none(void)
 {
     sl_seam_cost_def def = sl_seam_cost_default();
-    def.crease = def.concavity = def.loops = 0.0;
+    def.crease = def.concavity = def.visibility = def.loops = 0.0;
     return def;
 }
 
@@ -31,9 +33,9 @@ static bool is_share(double x)
 
 static bool is_valid(const sl_seam_cost_def *d)
 {
-    return is_share(d->crease) && is_share(d->concavity) && is_share(d->loops) && d->floor > 0.0 && d->floor <= 1.0 &&
-           d->angle_low >= 0.0 && d->angle_high > d->angle_low && d->angle_high <= HUGE_VAL && d->reach > 0.0 &&
-           d->reach < HUGE_VAL;
+    return is_share(d->crease) && is_share(d->concavity) && is_share(d->visibility) && is_share(d->loops) &&
+           d->floor > 0.0 && d->floor <= 1.0 && d->angle_low >= 0.0 && d->angle_high > d->angle_low &&
+           d->angle_high <= HUGE_VAL && d->reach > 0.0 && d->reach < HUGE_VAL;
 }
 
 /* 0 up to angle_low, 1 from angle_high on, with a smooth step between. */
@@ -75,6 +77,30 @@ cleanup:
     return status;
 }
 
+static sl_status apply_visibility(const sl_mesh *mesh, const sl_seam_cost_def *def, const sl_context *context,
+                                  double *weight)
+{
+    sl_status status = SL_OK;
+    const double *visible = def->visible;
+    double *computed = NULL;
+    if (visible == NULL) {
+        computed = sl_alloc(mesh->nf, sizeof *computed);
+        SL_TRY(computed != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+        SL_TRY(sl_ambient_compute(mesh, &def->ambient, context, computed));
+        visible = computed;
+    }
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        const int32_t t = sl_opposite(mesh, h);
+        if (h < t) {
+            const double hidden = 1.0 - 0.5 * (visible[mesh->face[h]] + visible[mesh->face[t]]);
+            weight[h] *= 1.0 - def->visibility * hidden;
+        }
+    }
+cleanup:
+    sl_free(computed);
+    return status;
+}
+
 static sl_status apply_loops(const sl_mesh *mesh, const sl_seam_cost_def *def, double *weight)
 {
     double *feature = sl_alloc(mesh->nh, sizeof *feature);
@@ -113,6 +139,9 @@ sl_status sl_seam_cost_compute(const sl_mesh *mesh, const sl_seam_cost_def *def,
     }
     if (def->crease > 0.0 || def->concavity > 0.0) {
         SL_TRY(apply_bend(mesh, def, weight));
+    }
+    if (def->visibility > 0.0) {
+        SL_TRY(apply_visibility(mesh, def, context, weight));
     }
     if (def->loops > 0.0) {
         SL_TRY(apply_loops(mesh, def, weight));

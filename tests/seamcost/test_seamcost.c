@@ -145,6 +145,31 @@ static void a_smooth_groove_costs_less_than_the_plain_around_it(void **state)
     sl_mesh_free(mesh);
 }
 
+/* By the definition, edge for edge; the same whether the visibility comes along or is computed. */
+static void hidden_edges_cost_less(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x41d);
+    static double visible[SOUP_FACES];
+    soup_grid(&s, &rng, SOUP_TORUS, 20, 14, 0.3);
+    sl_mesh *m = soup_build(&s, NULL);
+    sl_seam_cost_def def = sl_seam_cost_none();
+    def.visibility = 0.8;
+    assert_int_equal(sl_ambient_compute(m, &def.ambient, NULL, visible), SL_OK);
+    assert_int_equal(sl_seam_cost_compute(m, &def, NULL, weight), SL_OK);
+    double least = 1.0;
+    for (int32_t h = 0; h < m->nh; h++) {
+        const double seen = 0.5 * (visible[m->face[h]] + visible[m->face[m->twin[h]]]);
+        assert_true(test_near(weight[h], 1.0 - 0.8 * (1.0 - seen), 1e-15));
+        least = fmin(least, weight[h]);
+    }
+    assert_true(least < 0.8);
+    def.visible = visible;
+    assert_int_equal(sl_seam_cost_compute(m, &def, NULL, other), SL_OK);
+    assert_memory_equal(weight, other, (size_t)m->nh * sizeof *weight);
+    sl_mesh_free(m);
+}
+
 static void edge_loops_of_a_torus_close_and_those_of_a_sheet_count_their_edges(void **state)
 {
     (void)state;
@@ -266,14 +291,18 @@ static void bad_strengths_are_refused_and_a_caller_can_cancel(void **state)
     (void)state;
     test_rng rng = test_rng_seed(0x5ec);
     sl_mesh *m = folded(&rng, 0.9);
-    sl_seam_cost_def bad[] = {sl_seam_cost_default(), sl_seam_cost_default(), sl_seam_cost_default(),
-                              sl_seam_cost_default(), sl_seam_cost_default(), sl_seam_cost_default()};
+    sl_seam_cost_def bad[8];
+    for (size_t i = 0; i < SL_COUNTOF(bad); i++) {
+        bad[i] = sl_seam_cost_default();
+    }
     bad[0].crease = 1.2;
     bad[1].concavity = NAN;
     bad[2].loops = -0.1;
     bad[3].floor = 0.0;
     bad[4].angle_high = bad[4].angle_low;
     bad[5].reach = 0.0;
+    bad[6].visibility = -1e-9;
+    bad[7].ambient.rays = 0;
     for (size_t i = 0; i < SL_COUNTOF(bad); i++) {
         assert_int_equal(sl_seam_cost_compute(m, &bad[i], NULL, weight), SL_BAD_INPUT);
     }
@@ -294,6 +323,7 @@ int main(void)
         cmocka_unit_test(creases_cost_less_the_sharper_they_are_and_valleys_less_again),
         cmocka_unit_test(turns_on_a_torus_are_those_of_its_curvature),
         cmocka_unit_test(a_smooth_groove_costs_less_than_the_plain_around_it),
+        cmocka_unit_test(hidden_edges_cost_less),
         cmocka_unit_test(edge_loops_of_a_torus_close_and_those_of_a_sheet_count_their_edges),
         cmocka_unit_test(loops_of_pairs_are_those_of_the_quads),
         cmocka_unit_test(weights_agree_across_edges_and_seams_and_stay_in_range),
