@@ -58,7 +58,7 @@ cleanup:
 void sl_sheet_clear(sl_sheet *sheet)
 {
     for (int64_t k = 0; sheet->mask != NULL && k < (int64_t)sheet->count * sheet->turns; k++) {
-        sl_mask_clear(&sheet->mask[k]);
+        sl_pack_mask_clear(&sheet->mask[k]);
     }
     sl_free(sheet->mask);
     *sheet = (sl_sheet){0};

@@ -216,7 +216,7 @@ sl_status sl_mask_init(const sl_outline *outline, double angle, double scale, do
     return status;
 }
 
-void sl_mask_clear(sl_mask *mask)
+void sl_pack_mask_clear(sl_mask *mask)
 {
     sl_free(mask->run);
     *mask = (sl_mask){0};

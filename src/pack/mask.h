@@ -26,6 +26,6 @@ typedef struct sl_mask {
 SL_NODISCARD sl_status sl_mask_init(const sl_outline *outline, double angle, double scale, double grow,
                                     int32_t max_width, int32_t max_height, sl_mask *out);
 
-void sl_mask_clear(sl_mask *mask);
+void sl_pack_mask_clear(sl_mask *mask);
 
 #endif
