@@ -62,6 +62,7 @@ int cli_demo(int argc, char **argv);
 int cli_edit(int argc, char **argv);
 int cli_measure(int argc, char **argv);
 int cli_overlap(int argc, char **argv);
+int cli_pack(int argc, char **argv);
 int cli_render(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_segment(int argc, char **argv);

@@ -19,6 +19,7 @@ static const verb_entry verbs[] = {
     {"measure", cli_measure, "charts, seams, distortion, overlap and fill of any mesh with UVs"},
     {"compare", cli_compare, "several atlases, whatever tool made them, by the same measures, with pictures"},
     {"overlap", cli_overlap, "do the UVs of a mesh overlap, and where: by texels, or exactly"},
+    {"pack", cli_pack, "the charts of any mesh with UVs packed anew: nested, turned, on one page or several"},
     {"check", cli_check, "what is wrong with a mesh and how it would be repaired"},
     {"segment", cli_segment, "the charts only: labels, seam edges, a coloured PLY"},
     {"spectrum", cli_spectrum, "eigenvectors of the facet graph and the cuts they propose"},
