@@ -2,7 +2,9 @@
 #define _POSIX_C_SOURCE 200809L
 #include "base/memory.h"
 #include "cli/abf_trace.h"
+#include "geom/vec3.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <termios.h>
@@ -253,28 +255,43 @@ static sl_status check_pins(const sl_patch *patch, const abf_constraints *constr
     return status;
 }
 
+static void measure_angles(const sl_patch *patch, double *beta)
+{
+    for (int32_t c = 0; c < 3 * patch->nt; c++) {
+        const double *p = &patch->xyz[3 * (int64_t)patch->tri[c]];
+        double a[3], b[3], normal[3];
+        sl_vec3_sub(&patch->xyz[3 * (int64_t)patch->tri[sl_corner_next(c)]], p, a);
+        sl_vec3_sub(&patch->xyz[3 * (int64_t)patch->tri[sl_corner_prev(c)]], p, b);
+        sl_vec3_cross(a, b, normal);
+        beta[c] = atan2(sl_vec3_norm(normal), sl_vec3_dot(a, b));
+    }
+}
+
 static sl_status solve(abf_options *o, const abf_pick *pick, const abf_constraints *constraints, outcome *out,
                        sl_diag *diag)
 {
     const sl_patch *patch = pick->patch;
     sl_status status = SL_OK;
     sl_sector_table table = {0};
-    double *phi = sl_alloc(6 * (int64_t)patch->nt, sizeof *phi);
+    double *angles = sl_alloc(9 * (int64_t)patch->nt, sizeof *angles), *phi = angles;
     abf_trace trace = {.file = o->source.file, .pick = pick, .constraints = constraints, .table = &table};
-    SL_TRY(phi != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(angles != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    phi += 3 * (int64_t)patch->nt;
     SL_TRY(sl_constraints_compile(patch, constraints->count, constraints->item, pick->name, &table, diag));
     SL_TRY(check_pins(patch, constraints, diag));
     o->def.sectors = &table.view;
     trace.def = o->def;
     trace.phi = phi;
     trace.weight = phi + 3 * (int64_t)patch->nt;
+    trace.beta = angles;
+    measure_angles(patch, angles);
     sl_abf_targets(patch, &o->def, phi, phi + 3 * (int64_t)patch->nt);
     SL_TRY(o->step || o->iterations >= 0 ? step_by_step(o, &trace, out) : solve_chart(o, &trace, out));
     SL_TRY(deliver(o, &trace, diag));
 cleanup:
     abf_trace_clear(&trace);
     sl_sectors_clear(&table);
-    sl_free(phi);
+    sl_free(angles);
     return status;
 }
 

@@ -73,7 +73,7 @@ static void begin_plot(sl_writer *w, const axes *a, const char *label)
     const double span = a->hi - a->lo, tick = a->decades ? ceil(span / 6.0) : span / 4.0;
     for (double y = a->lo; y <= a->hi + 1e-9 * span; y += tick) {
         const double yy = top + (height - top - bottom) * (a->hi - y) / span;
-        sl_writer_format(w, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#dfe3e8\"/>", left, yy, width - right);
+        sl_writer_format(w, "<path d=\"M%.1f %.1fH%.1f\" class=\"grid\"/>", left, yy, width - right);
         sl_writer_format(w,
                          a->decades ? "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">1e%.0f</text>\n"
                                     : "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n",
@@ -86,13 +86,13 @@ static void begin_plot(sl_writer *w, const axes *a, const char *label)
     sl_writer_format(w, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">iteration</text>\n",
                      0.5 * (left + width - right), height - 4.0);
     sl_writer_format(w, "<text x=\"4\" y=\"12\">%s</text>\n", label);
-    sl_writer_format(w, "<path d=\"M%.1f %.1fV%.1fH%.1f\" fill=\"none\" stroke=\"#555a60\"/>\n", left, top,
-                     height - bottom, width - right);
+    sl_writer_format(w, "<path d=\"M%.1f %.1fV%.1fH%.1f\" class=\"axis\"/>\n", left, top, height - bottom,
+                     width - right);
 }
 
 static void draw_curve(sl_writer *w, const abf_trace *t, const axes *a, const curve *c, int32_t number)
 {
-    sl_writer_format(w, "<polyline fill=\"none\" stroke=\"%s\" stroke-width=\"2\" points=\"", c->color);
+    sl_writer_format(w, "<polyline class=\"curve %s\" points=\"", c->color);
     for (int32_t k = 0; k < t->count; k++) {
         sl_writer_format(w, "%.1f,%.1f ", at_x(a, k), at_y(a, c->value(&t->frame[k])));
     }
@@ -100,23 +100,23 @@ static void draw_curve(sl_writer *w, const abf_trace *t, const axes *a, const cu
     for (int32_t k = 0; k < t->count; k++) {
         const double v = c->value(&t->frame[k]);
         sl_writer_format(w,
-                         "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.2\" fill=\"%s\"><title>%s, iteration %d: %.6g"
+                         "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.2\" class=\"point %s\"><title>%s, iteration %d: %.6g"
                          "</title></circle>\n",
                          at_x(a, k), at_y(a, v), c->color, c->name, k, v);
     }
     const double y = top + 16.0 + 20.0 * number;
     sl_writer_format(w,
-                     "<path d=\"M%.1f %.1fh18\" stroke=\"%s\" stroke-width=\"2.5\"/><text x=\"%.1f\" y=\"%.1f\">%s"
+                     "<path d=\"M%.1f %.1fh18\" class=\"curve %s\"/><text x=\"%.1f\" y=\"%.1f\">%s"
                      "</text>\n",
                      width - right + 14.0, y, c->color, width - right + 38.0, y + 4.0, c->name);
 }
 
 void abf_svg_convergence(sl_writer *w, const abf_trace *t)
 {
-    static const curve curves[] = {{"|grad L|", "#1d2126", gradient_of},
-                                   {"max |g1|", "#2456c8", g1_of},
-                                   {"max |g2|", "#1a7f4b", g2_of},
-                                   {"max |g3|", "#c62830", g3_of}};
+    static const curve curves[] = {{"|grad L|", "ink", gradient_of},
+                                   {"max |g1|", "blue", g1_of},
+                                   {"max |g2|", "green", g2_of},
+                                   {"max |g3|", "red", g3_of}};
     axes a = {t->count, 0.0, lowest_decade, true};
     for (size_t c = 0; c < SL_COUNTOF(curves); c++) {
         for (int32_t k = 0; k < t->count; k++) {
@@ -152,7 +152,7 @@ static void plain_plot(sl_writer *w, const abf_trace *t, const curve *c)
 
 void abf_svg_progress(sl_writer *w, const abf_trace *t)
 {
-    static const curve energy = {"energy E", "#7a3db8", energy_of}, angle = {"smallest angle", "#b86a00", angle_of};
+    static const curve energy = {"energy E", "violet", energy_of}, angle = {"smallest angle", "brown", angle_of};
     plain_plot(w, t, &energy);
     plain_plot(w, t, &angle);
 }

@@ -2,70 +2,46 @@
 #include "cli/abf_svg.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdio.h>
 
 static const double degrees = 57.29577951308232;
 
-enum { PICTURES = 60 }; /* layouts drawn at most: the first ones, and the last */
+/* Layouts drawn at most, the first ones and the last; fewer where charts are large: so many triangles in all. */
+enum { PICTURES = 60, FEWEST = 3, DRAWN_TRIANGLES = 400000 };
 
 static const char style[] =
-    "body{font:15px/1.5 system-ui,sans-serif;color:#1d2126;background:#fff;max-width:1180px;margin:2rem auto;padding:0 "
-    "1rem}"
-    "h1{font-size:1.7rem}h2{margin-top:2.2rem;border-bottom:1px solid #dfe3e8}"
+    "body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--page);max-width:1280px;"
+    "margin:2rem auto;padding:0 1rem}h1{font-size:1.7rem}h2{margin-top:2.2rem;border-bottom:1px solid var(--line)}"
+    "h3{font-size:1.05rem;margin:.4rem 0}"
     "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}"
-    "td,th{padding:.25rem .6rem;border-bottom:1px solid #e6e9ed;text-align:right;white-space:nowrap}"
-    "td.l,th.l{text-align:left;white-space:normal}code{font-size:12.5px;background:#f2f4f6;padding:0 .25em}"
-    ".scroll{overflow-x:auto}.steps{display:flex;flex-wrap:wrap;gap:1.2rem}figure{margin:0;border:1px solid #e6e9ed;"
-    "padding:.6rem;border-radius:6px}figcaption{font-size:13px;color:#444a52}"
-    "svg text{font:11px system-ui,sans-serif;fill:#333840}svg .a{font-size:9.5px;text-anchor:middle;fill:#14335f}"
-    "svg text{paint-order:stroke;stroke:#fff;stroke-width:2.5px;stroke-linejoin:round}svg .v{font-weight:600}svg "
-    ".r{font-size:8.5px;fill:#8c2027}.bar{display:inline-block;width:14px;height:14px;"
-    "border:1px solid #8a929c;margin:0 .2em 0 .8em;vertical-align:-2px}@media print{figure{break-inside:avoid}}";
+    "td,th{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}"
+    "td.l,th.l{text-align:left;white-space:normal}td.n{min-width:11em}"
+    "code{font-size:12.5px;background:var(--card);padding:0 .25em;white-space:nowrap}.scroll{overflow-x:auto}"
+    ".steps{display:flex;flex-wrap:wrap;gap:1.2rem}"
+    "figure{margin:0;border:1px solid var(--line);padding:.6rem;border-radius:6px}"
+    "figcaption,.quiet{font-size:13px;color:var(--quiet)}svg{max-width:100%;height:auto}"
+    "pre{background:var(--card);padding:.8rem;overflow-x:auto;font-size:12px}"
+    ".bar{display:inline-block;width:14px;height:14px;background:var(--q);border:1px solid var(--quiet);"
+    "margin:0 .2em 0 .8em;vertical-align:-2px}"
+    ".it{display:grid;grid-template-columns:minmax(300px,4fr) minmax(520px,7fr);gap:1.2rem;"
+    "align-items:start;margin:1rem 0 2rem}.it>div{min-width:0}@media(max-width:900px){.it{display:block}}"
+    "#player{position:sticky;top:0;background:var(--page);padding:.6rem 0;display:none;gap:.8rem;"
+    "align-items:center;z-index:1;border-bottom:1px solid var(--line)}#player input{flex:1}"
+    "button{font:inherit;padding:.15rem .8rem}.js #player{display:flex}.js .it{display:none}"
+    ".js .it.on{display:grid}@media(max-width:900px){.js .it.on{display:block}}@media print{.js .it{display:grid}"
+    "#player{display:none!important}figure{break-inside:avoid}}";
 
-/* A line of the computation. */
-typedef struct step_line {
-    const char *what, *formula, *equation, *function, *file;
-} step_line;
-
-static const step_line steps[] = {
-    {"angles measured on the surface", "&beta;<sub>c</sub> = atan2(|a &times; b|, a &middot; b), at least 0.1&deg;",
-     "Sec. 4.1", "sl_abf_targets", "src/param/abf_targets.c"},
-    {"optimal angles", "&phi; = 2&pi; &beta; / &Sigma;<sub>v</sub> &beta; inside, &beta; on the border", "Sec. 4.1",
-     "sl_abf_targets", "src/param/abf_targets.c"},
-    {"energy", "E = &Sigma; w (&alpha; &minus; &phi;)&sup2;, w = 1/&phi;&sup2; or 1", "(1)", "sl_abf_evaluate",
-     "src/param/abf_newton.c"},
-    {"triangles close", "g1(t) = &Sigma;<sub>t</sub> &alpha; &minus; &pi;", "(2)", "sl_abf_eval_g1",
-     "src/param/abf_constraints.c"},
-    {"vertices are flat; border angles and lines as asked",
-     "g2(s) = &Sigma;<sub>s</sub> &alpha; &minus; &theta;<sub>s</sub>", "(3), (5), (6)", "sl_abf_eval_g2",
-     "src/param/abf_constraints.c"},
-    {"wheels close",
-     "g3(v) = &Sigma; log sin &alpha;<sup>next</sup> &minus; &Sigma; log sin &alpha;<sup>prev</sup> (or a product "
-     "difference, or the ratio &minus; 1)",
-     "(4)", "sl_abf_eval_g3", "src/param/abf_constraints.c"},
-    {"constraints asked for, as sectors",
-     "S<sub>1</sub>, S<sub>2</sub>, ...: runs of corners with &theta; = &pi;, &pi;/2 or the angle given", "(5), (6)",
-     "sl_constraints_compile", "src/param/constraints.c"},
-    {"Jacobian J of g1, g2, g3", "1 in g1 and g2; &plusmn;cot &alpha; in g3 (times the products in the other forms)",
-     "Newton", "sl_abf_system_linearise", "src/param/abf_system.c"},
-    {"gradient of the Lagrangian", "&nabla;L = 2 w (&alpha; &minus; &phi;) + J&#8242; &lambda;", "Newton",
-     "sl_abf_evaluate", "src/param/abf_newton.c"},
-    {"Hessian", "&Lambda; = 2 diag(w); exact Newton adds &lambda;<sub>3</sub> times the curvature of g3", "Newton",
-     "set_hessian", "src/param/abf_newton.c"},
-    {"Schur complement once g1 is eliminated",
-     "M = J<sub>2</sub> P J<sub>2</sub>&#8242;, P = D &minus; D1 1&#8242;D / 1&#8242;D1 per triangle, D = "
-     "&Lambda;<sup>&minus;1</sup>",
-     "ABF++", "sl_abf_system_assemble", "src/param/abf_assemble.c"},
-    {"its Cholesky factor", "M = L L&#8242;, ordered once", "ABF++", "sl_cholesky_factor", "src/sparse/factor.c"},
-    {"multipliers, then angles",
-     "M &delta;&lambda;<sub>2</sub> = g + ..., &delta;&alpha; = &minus;P (&nabla;L + J<sub>2</sub>&#8242; "
-     "&delta;&lambda;<sub>2</sub>) + ...",
-     "ABF++", "sl_abf_newton_step", "src/param/abf_newton.c"},
-    {"step length", "1, or 0.95 of the way to the first angle that would reach 0 or &pi;", "-", "sl_abf_newton_step",
-     "src/param/abf_newton.c"},
-    {"positions from angles", "least squares over all triangles, two border vertices held", "Sec. 4.1",
-     "sl_reconstruct_solve", "src/param/reconstruct.c"},
-};
+/* Shows one iteration at a time; without it all stand one below the other. */
+static const char script[] =
+    "const its=[...document.querySelectorAll('.it')],bar=document.getElementById('at'),"
+    "label=document.getElementById('which');document.body.classList.add('js');"
+    "function show(k){k=Math.max(0,Math.min(its.length-1,k));its.forEach((s,i)=>s.classList.toggle('on',i===k));"
+    "bar.value=k;label.textContent=its[k].dataset.name}"
+    "bar.max=its.length-1;bar.oninput=()=>show(+bar.value);"
+    "document.getElementById('back').onclick=()=>show(+bar.value-1);"
+    "document.getElementById('on').onclick=()=>show(+bar.value+1);"
+    "document.onkeydown=e=>{if(e.target!==bar&&e.key==='ArrowLeft')show(+bar.value-1);"
+    "if(e.target!==bar&&e.key==='ArrowRight')show(+bar.value+1)};show(its.length-1);";
 
 static void write_escaped(sl_writer *w, const char *text)
 {
@@ -130,16 +106,23 @@ static void write_constraints(sl_writer *w, const abf_trace *t)
 
 static void write_iterations(sl_writer *w, const abf_trace *t)
 {
-    sl_writer_text(w, "<div class=\"scroll\"><table><tr><th>iteration</th><th>energy (1)</th><th>|&nabla;L|</th>"
+    const bool again = abf_trace_last(t)->solve > 1;
+    sl_writer_text(w, "<div class=\"scroll\"><table><tr>");
+    sl_writer_text(w, again ? "<th>solve</th><th>targets off [deg]</th>" : "");
+    sl_writer_text(w, "<th>iteration</th><th>energy (1)</th><th>|&nabla;L|</th>"
                       "<th>max |g1| (2)</th><th>max |g2| (3)</th><th>max |g3| (4)</th><th>smallest angle</th>"
                       "<th>step</th><th>flipped</th></tr>\n");
     for (int32_t k = 0; k < t->count; k++) {
         const sl_abf_info *i = &t->frame[k].info;
+        sl_writer_text(w, "<tr>");
+        if (again) {
+            sl_writer_format(w, "<td>%d</td><td>%.4f</td>", t->frame[k].solve, t->frame[k].aside * degrees);
+        }
         sl_writer_format(w,
-                         "<tr><td>%d</td><td>%.10g</td><td>%.2e</td><td>%.2e</td><td>%.2e</td><td>%.2e</td>"
+                         "<td>%d</td><td>%.10g</td><td>%.2e</td><td>%.2e</td><td>%.2e</td><td>%.2e</td>"
                          "<td>%.4f&deg;</td>",
                          i->iterations, i->energy, i->gradient, i->g1, i->g2, i->g3, i->min_angle * degrees);
-        sl_writer_format(w, k > 0 ? "<td>%.4f</td>" : "<td>-</td>", i->step);
+        sl_writer_format(w, i->iterations > 0 ? "<td>%.4f</td>" : "<td>-</td>", i->step);
         sl_writer_format(w, "<td>%d</td></tr>\n", t->frame[k].flipped);
     }
     sl_writer_text(w, "</table></div>\n");
@@ -151,44 +134,75 @@ static void write_iterations(sl_writer *w, const abf_trace *t)
                      t->distortion.angle_mean, t->distortion.angle_max);
 }
 
-static void write_steps(sl_writer *w)
+/* How frame k is called: "start", "iteration 3", "solve 2, iteration 1". */
+static void name_frame(const abf_trace *t, int32_t k, char name[64])
 {
-    sl_writer_text(w, "<div class=\"scroll\"><table><tr><th class=\"l\">what</th><th class=\"l\">formula</th>"
-                      "<th class=\"l\">equation</th><th class=\"l\">C function</th><th class=\"l\">file</th></tr>\n");
-    for (size_t k = 0; k < SL_COUNTOF(steps); k++) {
-        sl_writer_format(w,
-                         "<tr><td class=\"l\">%s</td><td class=\"l\">%s</td><td class=\"l\">%s</td><td class=\"l\">"
-                         "<code>%s</code></td><td class=\"l\"><code>%s</code></td></tr>\n",
-                         steps[k].what, steps[k].formula, steps[k].equation, steps[k].function, steps[k].file);
+    const abf_frame *f = &t->frame[k];
+    const int32_t i = f->info.iterations;
+    char solve[32] = "";
+    if (abf_trace_last(t)->solve > 1) {
+        snprintf(solve, sizeof solve, "solve %d, ", f->solve);
     }
-    sl_writer_text(w, "</table></div>\n");
+    if (f->held) {
+        snprintf(name, 64, "back to the last valid state");
+    } else if (i == 0) {
+        snprintf(name, 64, f->solve > 1 ? "%sstart" : "%sstart: alpha = phi", solve);
+    } else {
+        snprintf(name, 64, "%siteration %d", solve, i);
+    }
 }
 
-static void write_layouts(sl_writer *w, const abf_trace *t)
+static void write_legend(sl_writer *w)
 {
-    char color[32];
     sl_writer_text(w, "<p>Triangles are coloured by |g1|, vertices by the worse of |g2| and |g3|:");
     for (int decade = -12; decade <= 0; decade += 3) {
-        abf_residual_color(pow(10.0, decade), color);
-        sl_writer_format(w, "<span class=\"bar\" style=\"background:%s\"></span>1e%d", color, decade);
+        sl_writer_format(w, "<span class=\"bar q%d\"></span>1e%d", abf_residual_class(pow(10.0, decade)), decade);
     }
     sl_writer_text(w,
                    ". Blue: lines to be straight; yellow: vertices with a prescribed angle. Numbers in the corners "
-                   "are angles in degrees; rest the pointer on anything for its numbers.</p>\n<div class=\"steps\">\n");
+                   "are angles in degrees; rest the pointer on anything for its numbers. Equation numbers are those of "
+                   "\"What you seam is what you get\"; the files are those of the program's sources.</p>\n");
+}
+
+/* Every iteration: the chart, and the computation line by line with what came out. */
+static void write_frames(sl_writer *w, const abf_trace *t)
+{
+    const int32_t nt = t->pick->patch->nt, many = DRAWN_TRIANGLES / (nt > 0 ? nt : 1);
+    const int32_t pictures = many < FEWEST ? FEWEST : many < PICTURES ? many : PICTURES;
+    char name[64];
+    write_legend(w);
+    sl_writer_text(w, "<div id=\"player\"><button id=\"back\" type=\"button\">&larr;</button><input id=\"at\" "
+                      "type=\"range\" min=\"0\" value=\"0\" aria-label=\"iteration\"><button id=\"on\" "
+                      "type=\"button\">&rarr;</button><b id=\"which\"></b></div>\n");
     for (int32_t k = 0; k < t->count; k++) {
-        if (k >= PICTURES && k + 1 < t->count) {
-            continue;
-        }
-        sl_writer_text(w, "<figure>\n");
-        abf_svg_chart(w, t, &t->frame[k]);
-        if (k == 0) {
-            sl_writer_text(w, "<figcaption>start: &alpha; = &phi;</figcaption></figure>\n");
+        name_frame(t, k, name);
+        sl_writer_format(w, "<section class=\"it\" data-name=\"%s\"><div><h3>%s</h3>\n", name, name);
+        if (k < pictures || k + 1 == t->count) {
+            sl_writer_text(w, "<figure>\n");
+            abf_svg_chart(w, t, &t->frame[k]);
+            sl_writer_text(w, "</figure>\n");
         } else {
-            sl_writer_format(w, "<figcaption>after iteration %d: E = %.8g, |&nabla;L| = %.1e</figcaption></figure>\n",
-                             t->frame[k].info.iterations, t->frame[k].info.energy, t->frame[k].info.gradient);
+            sl_writer_text(w, "<p class=\"quiet\">The first layouts and the last one are drawn.</p>\n");
         }
+        sl_writer_text(w, "</div><div>\n");
+        abf_report_steps(w, t, k);
+        sl_writer_text(w, "</div></section>\n");
     }
-    sl_writer_text(w, "</div>\n");
+}
+
+/* The convergence plot as a script that gnuplot draws. */
+static void write_gnuplot(sl_writer *w, const abf_trace *t)
+{
+    sl_writer_text(w, "<details><summary>The same for gnuplot</summary><pre>set terminal svg\nset output "
+                      "'convergence.svg'\nset logscale y\nset format y '1e%T'\nset xlabel 'iteration'\n$it &lt;&lt; "
+                      "EOD\n# k energy grad g1 g2 g3 smallest-angle step\n");
+    for (int32_t k = 0; k < t->count; k++) {
+        const sl_abf_info *i = &t->frame[k].info;
+        sl_writer_format(w, "%d %.9g %.3e %.3e %.3e %.3e %.6f %.4f\n", k, i->energy, i->gradient, i->g1, i->g2, i->g3,
+                         i->min_angle * degrees, i->step);
+    }
+    sl_writer_text(w, "EOD\nplot for [c=3:6] $it using 1:c with linespoints title word('|grad| g1 g2 g3', c-2)\n"
+                      "</pre></details>\n");
 }
 
 sl_status abf_report_write(const abf_trace *t, const char *path, sl_diag *diag)
@@ -199,7 +213,9 @@ sl_status abf_report_write(const abf_trace *t, const char *path, sl_diag *diag)
         return status;
     }
     sl_writer_text(w, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-                      "content=\"width=device-width\"><title>ABF++ step by step</title><style>");
+                      "content=\"width=device-width\"><meta name=\"color-scheme\" content=\"light dark\"><title>ABF++ "
+                      "step by step</title><style>");
+    abf_svg_style(w);
     sl_writer_text(w, style);
     sl_writer_text(w, "</style></head><body>\n<h1>ABF++ step by step</h1>\n");
     write_chart(w, t);
@@ -210,17 +226,18 @@ sl_status abf_report_write(const abf_trace *t, const char *path, sl_diag *diag)
     abf_svg_convergence(w, t);
     abf_svg_progress(w, t);
     sl_writer_text(w, "</div>\n");
-    sl_writer_text(w, "<h2>The chart after every iteration</h2>\n");
-    write_layouts(w, t);
+    write_gnuplot(w, t);
+    sl_writer_text(w, "<h2>Iteration by iteration</h2>\n");
+    write_frames(w, t);
     if (t->J != NULL) {
         sl_writer_text(w, "<h2>The matrices of the last iteration</h2>\n<div class=\"steps\">\n");
         abf_svg_matrix(w, "J: rows g1, g2, g3; columns angles", t->J, false);
         abf_svg_matrix(w, "Schur complement: rows g2, g3", t->M, true);
         sl_writer_text(w, "</div>\n");
     }
-    sl_writer_text(w, "<h2>What is computed, and where</h2>\n<p>Equation numbers are those of \"What you seam is what "
-                      "you get\".</p>\n");
-    write_steps(w);
+    sl_writer_text(w, "<script>");
+    sl_writer_text(w, script);
+    sl_writer_text(w, "</script>\n");
     sl_writer_text(w, "</body></html>\n");
     return sl_writer_commit(w, diag);
 }

@@ -20,7 +20,14 @@ void abf_svg_progress(sl_writer *w, const abf_trace *trace);
 /* Where a matrix has entries: blue positive, red negative. */
 void abf_svg_matrix(sl_writer *w, const char *name, const sl_csc *A, bool symmetric);
 
-/* The colour of a residual, as in abf_svg_chart: "rgb(r,g,b)". */
-void abf_residual_color(double residual, char text[32]);
+/* The computation of a frame line by line: equation, C function, value. */
+void abf_report_steps(sl_writer *w, const abf_trace *trace, int32_t frame);
+
+/* The class of a residual, "q0" to "q12": 1e-12 and less to 1. */
+enum { ABF_RESIDUAL_CLASSES = 13 };
+int32_t abf_residual_class(double residual);
+
+/* The style sheet of all these, for light and dark pages. */
+void abf_svg_style(sl_writer *w);
 
 #endif

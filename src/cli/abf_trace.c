@@ -67,7 +67,9 @@ static sl_status lay_out(const abf_trace *trace, abf_frame *frame, const sl_cont
     SL_TRY(sl_reconstruct_create(patch, &layout));
     SL_TRY(sl_reconstruct_solve(layout, frame->alpha, context, frame->uv));
     SL_TRY(sl_pins_apply(patch, trace->constraints->pins, trace->constraints->pin, frame->uv, NULL));
-    frame->flipped = sl_layout_judge(patch, frame->alpha, frame->uv).flipped;
+    const sl_layout_quality quality = sl_layout_judge(patch, frame->alpha, frame->uv);
+    frame->flipped = quality.flipped;
+    frame->angle_error = quality.angle_error;
 cleanup:
     sl_reconstruct_free(layout);
     if (status == SL_SINGULAR || status == SL_INFEASIBLE) {

@@ -12,13 +12,14 @@ enum { ABF_MATRIX_TRIANGLES = 12 }; /* charts up to this many triangles are smal
 /* The state after an iteration; number 0 is the start. */
 typedef struct abf_frame {
     sl_abf_info info;
-    double *alpha;    /* 3 nt */
-    double *residual; /* nt of g1, sectors of g2, wheels of g3 */
-    double *uv;       /* nv x 2; NULL: the angles could not be laid out */
-    int32_t flipped;  /* triangles of uv */
-    int32_t solve;    /* 1, 2, ...: homotopy solves again and again, for targets nearer and nearer */
-    double aside;     /* how far its targets are from those asked for, at most [rad] */
-    bool held;        /* no step: what is held in the end, since the last solve came to nothing */
+    double *alpha;      /* 3 nt */
+    double *residual;   /* nt of g1, sectors of g2, wheels of g3 */
+    double *uv;         /* nv x 2; NULL: the angles could not be laid out */
+    int32_t flipped;    /* triangles of uv */
+    double angle_error; /* largest |angle in uv - alpha| [rad] */
+    int32_t solve;      /* 1, 2, ...: homotopy solves again and again, for targets nearer and nearer */
+    double aside;       /* how far its targets are from those asked for, at most [rad] */
+    bool held;          /* no step: what is held in the end, since the last solve came to nothing */
 } abf_frame;
 
 /* All of a run; what it points to is borrowed but for the frames and matrices (abf_trace_clear). */
@@ -30,6 +31,7 @@ typedef struct abf_trace {
     sl_abf_def def;
     sl_abf_chart_info chart; /* whether all targets were reached, and what is left; solves = 0: stepped by hand */
     sl_abf_sizes sizes;
+    const double *beta;         /* 3 nt: angles measured on the surface */
     const double *phi, *weight; /* 3 nt: targets and weights of the energy */
     int32_t count;
     abf_frame *frame;

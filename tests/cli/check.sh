@@ -144,6 +144,9 @@ contains out.txt 'converged after 1 iteration'
 contains out.txt '0.02493134'
 contains out.txt '2.074'
 contains tent.html 'sl_abf_eval_g2'
+contains tent.html 'data-name="iteration 1"'
+contains tent.html 'largest change of an angle'
+contains tent.html 'prefers-color-scheme:dark'
 cat out.txt tent.html >by-hand.txt
 json tent.json
 expect 0 "$seamlab" abf tent.obj --json
