@@ -150,6 +150,51 @@ static void from_inside_of_a_cube_every_pixel_shows_a_wall(void **state)
     sl_frame_free(frame);
 }
 
+/* Pixel centres on edges and corners: a triangle owns those that a step to the right, and a far smaller one down, takes
+ * inside (the top-left rule). Small triangles and large ones, partly beside the picture. */
+static void pixels_on_edges_belong_to_the_triangle_below_and_right(void **state)
+{
+    (void)state;
+    enum { WIDE = 128 };
+    test_rng rng = test_rng_seed(0x70b);
+    const sl_camera camera = sl_camera_plan(0.0, 0.0, 1.0, 1.0);
+    const sl_frame_style style = sl_frame_style_default();
+    static const int32_t tri[3] = {0, 1, 2};
+    uint8_t *rgba = sl_alloc(WIDE * WIDE, 4);
+    int32_t large = 0;
+    for (int trial = 0; trial < 150 * test_multiplier(); trial++) {
+        double xyz[9], p[3][2];
+        const int32_t reach = trial % 3 == 0 ? 8 : 100;
+        const int32_t base[2] = {test_index(&rng, 60) - 10, test_index(&rng, 60) - 10};
+        for (int k = 0; k < 3; k++) {
+            p[k][0] = base[0] + test_index(&rng, reach);
+            p[k][1] = trial % 4 == 1 && k == 1 ? p[0][1] : base[1] + test_index(&rng, reach);
+            xyz[3 * k] = (p[k][0] + 0.5) / WIDE;
+            xyz[3 * k + 1] = 1.0 - (p[k][1] + 0.5) / WIDE;
+            xyz[3 * k + 2] = 0.1 * k;
+        }
+        const sl_frame_def def = {3, 1, xyz, tri, NULL, NULL};
+        sl_frame *frame = NULL;
+        assert_int_equal(sl_frame_create(&def, &frame), SL_OK);
+        assert_int_equal(sl_frame_draw(frame, &camera, &style, WIDE, WIDE, NULL, rgba), SL_OK);
+        for (int32_t i = 0; i < WIDE * WIDE; i++) {
+            const double x = i % WIDE + 1e-2, y = i / WIDE + 1e-5;
+            int32_t left = 0, right = 0;
+            for (int k = 0; k < 3; k++) {
+                const double *a = p[k], *b = p[(k + 1) % 3];
+                const double side = (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+                left += side > 0.0;
+                right += side < 0.0;
+            }
+            assert_int_equal(sl_frame_pick(frame, i % WIDE, i / WIDE).triangle, left == 3 || right == 3 ? 0 : -1);
+        }
+        large += reach == 100;
+        sl_frame_free(frame);
+    }
+    assert_true(large > 50);
+    sl_free(rgba);
+}
+
 static void culling_changes_no_pixel_of_a_closed_surface(void **state)
 {
     (void)state;
@@ -251,7 +296,7 @@ static void lines_are_clipped_at_the_near_plane(void **state)
     test_rng rng = test_rng_seed(0x11e5);
     uint8_t *rgba = sl_alloc(SIDE * SIDE, 4);
     int32_t crossing = 0, inked = 0;
-    for (int trial = 0; trial < 150 * test_multiplier(); trial++) {
+    for (int trial = 0; trial < 300 * test_multiplier(); trial++) {
         double xyz[6], end[2][2] = {{0.0}};
         for (int k = 0; k < 6; k++) {
             xyz[k] = test_uniform(&rng, -1.0, 1.0) * (trial % 5 == 0 ? 1e4 : 1.0);
@@ -260,7 +305,7 @@ static void lines_are_clipped_at_the_near_plane(void **state)
                             .right = {0.6, 0.0, 0.8},
                             .up = {0.0, 1.0, 0.0},
                             .forward = {0.8, 0.0, -0.6},
-                            .centre = {0.5, 0.47},
+                            .centre = {test_uniform(&rng, -1.0, 2.0), test_uniform(&rng, -1.0, 2.0)},
                             .focal = 0.9,
                             .near_depth = trial % 2 == 0 ? 0.05 : 1e-9,
                             .perspective = true};
@@ -357,6 +402,7 @@ int main(void)
         cmocka_unit_test(picking_finds_the_triangle_that_a_ray_meets_first),
         cmocka_unit_test(a_frame_has_the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(from_inside_of_a_cube_every_pixel_shows_a_wall),
+        cmocka_unit_test(pixels_on_edges_belong_to_the_triangle_below_and_right),
         cmocka_unit_test(culling_changes_no_pixel_of_a_closed_surface),
         cmocka_unit_test(lines_are_hidden_by_what_is_nearer),
         cmocka_unit_test(lines_are_clipped_at_the_near_plane),
