@@ -36,6 +36,8 @@ typedef struct chain {
     double *map;               /* nv x 2: the map under trial */
     double *best;              /* nv x 2: borrowed from the caller */
     sl_flatten_result *result; /* of best */
+    sl_abf_def abf;            /* with the sectors of the constraints */
+    bool constrained;          /* c->map keeps the constraints */
 } chain;
 
 sl_flatten_def sl_flatten_default(void)
@@ -121,6 +123,7 @@ static sl_status consider(chain *c, sl_flatten_method method, bool minimised, bo
     sl_flatten_result judged = *c->result;
     judged.method = method;
     judged.stretch_minimised = minimised;
+    judged.constrained = c->constrained;
     const sl_status status = judge(c, converged, &judged);
     if (status != SL_OK) {
         return status;
@@ -144,6 +147,11 @@ static bool is_no_answer(sl_status status)
 {
     return status == SL_SINGULAR || status == SL_INFEASIBLE || status == SL_BAD_INPUT ||
            status == SL_NOT_POSITIVE_DEFINITE;
+}
+
+static bool is_constrained(const sl_flatten_def *def)
+{
+    return def->wishes.constraint_count > 0;
 }
 
 /* Facets that need no method: flat ones, and those without any area. *done = the map found is final. */
@@ -178,7 +186,7 @@ cleanup:
 /* ABF++, and LSCM where that fails (unless every fallback is off). trial: the verdict on the last map made. */
 static sl_status try_conformal(chain *c, sl_flatten_result *trial)
 {
-    sl_status status = sl_abf_flatten(c->patch, &c->def->abf, c->context, c->map, &c->result->abf);
+    sl_status status = sl_abf_flatten(c->patch, &c->abf, c->context, c->map, &c->result->abf);
     if (status != SL_OK && !is_no_answer(status)) {
         return status;
     }
@@ -189,6 +197,7 @@ static sl_status try_conformal(chain *c, sl_flatten_result *trial)
     if (rank(trial->verdict) > rank(SL_CHART_FLIPPED) || (!c->def->tutte && !c->def->minimise_stretch)) {
         return SL_OK;
     }
+    c->constrained = !is_constrained(c->def);
     status = sl_lscm(c->patch, c->context, c->map);
     if (status == SL_OK) {
         SL_TRY(consider(c, SL_FLATTEN_LSCM, false, true, trial));
@@ -199,15 +208,25 @@ cleanup:
     return status;
 }
 
+/* From c->map, with the constraints that it keeps. */
+static sl_status minimise_map(chain *c, const sl_stretch_def *def, sl_stretch_info *info)
+{
+    const sl_flatten_wishes wishes = {.constraint_count = c->def->wishes.constraint_count,
+                                      .constraint = c->def->wishes.constraint};
+    return c->constrained && is_constrained(c->def) ? sl_flatten_relax(c->patch, def, &wishes, c->context, c->map, info)
+                                                    : sl_stretch_minimise(c->patch, def, c->context, c->map, info);
+}
+
 /* Minimises by def, from c->map or without a start, and judges what comes out. *found = there is a map. */
 static sl_status minimise(chain *c, const sl_stretch_def *def, bool from_map, sl_flatten_method method,
                           sl_flatten_result *trial, bool *found)
 {
     const int32_t before = c->result->stretch.iterations;
     sl_stretch_info info = {0};
-    const sl_status status = from_map ? sl_stretch_minimise(c->patch, def, c->context, c->map, &info)
-                                      : sl_stretch_unfold(c->patch, def, c->context, c->map, &info);
+    const sl_status status =
+        from_map ? minimise_map(c, def, &info) : sl_stretch_unfold(c->patch, def, c->context, c->map, &info);
     *found = status == SL_OK;
+    c->constrained = !is_constrained(c->def) || (from_map && c->constrained);
     if (status != SL_OK) {
         return is_no_answer(status) ? SL_OK : status;
     }
@@ -252,6 +271,7 @@ static sl_status polish(chain *c, sl_flatten_method method)
 /* Tutte's embedding, with uniform weights: cotangents shrink long limbs by up to 1e4 more. */
 static sl_status try_tutte(chain *c)
 {
+    c->constrained = !is_constrained(c->def);
     const sl_status status = sl_tutte(c->patch, SL_TUTTE_UNIFORM, c->context, c->map);
     if (status != SL_OK) {
         return is_no_answer(status) ? SL_OK : status;
@@ -287,13 +307,83 @@ cleanup:
     return status;
 }
 
+static double pin_distance(const sl_flatten_wishes *wishes, const double *uv)
+{
+    double most = 0.0;
+    for (int32_t i = 0; i < wishes->pin_count; i++) {
+        const double *p = &uv[2 * (int64_t)wishes->pin[i].vertex];
+        most = fmax(most, hypot(p[0] - wishes->pin[i].uv[0], p[1] - wishes->pin[i].uv[1]));
+    }
+    return most;
+}
+
+/* Brings the best map to its pins: two by a similarity, more by the minimiser, to its end. What comes out stays, and is
+ * judged. */
+static sl_status bring_to_pins(chain *c)
+{
+    sl_flatten_wishes wishes = c->def->wishes;
+    sl_stretch_def def = c->def->stretch;
+    sl_stretch_info info = {0};
+    sl_status status;
+    memcpy(c->map, c->best, 2 * (size_t)c->patch->nv * sizeof *c->map);
+    def.simple_border = c->result->verdict == SL_CHART_VALID;
+    wishes.constraint_count = c->result->constrained ? wishes.constraint_count : 0;
+    status = wishes.pin_count <= 2 ? sl_pins_apply(c->patch, wishes.pin_count, wishes.pin, c->map, NULL)
+                                   : sl_flatten_relax(c->patch, &def, &wishes, c->context, c->map, &info);
+    if (status == SL_OK) {
+        c->result->stretch_minimised = c->result->stretch_minimised || wishes.pin_count > 2;
+        SL_TRY(judge(c, true, c->result));
+        memcpy(c->best, c->map, 2 * (size_t)c->patch->nv * sizeof *c->map);
+    } else if (is_no_answer(status)) {
+        status = SL_OK;
+    }
+    c->result->pin_distance = pin_distance(&wishes, c->best);
+cleanup:
+    return status;
+}
+
+static sl_status flatten_chart(chain *c, bool one_facet)
+{
+    sl_status status = SL_OK;
+    bool done = false;
+    c->constrained = !is_constrained(c->def);
+    c->result->constrained = c->constrained;
+    if (c->constrained) { /* a projection asks nobody */
+        SL_TRY(try_plane(c, one_facet, &done));
+    }
+    c->constrained = true; /* as long as it is ABF++'s map */
+    if (!done) {
+        SL_TRY(flatten_disk(c));
+    }
+    if (c->def->wishes.pin_count > 0 && c->result->method != SL_FLATTEN_NONE) {
+        SL_TRY(bring_to_pins(c));
+    }
+cleanup:
+    return status;
+}
+
+static bool pins_are_valid(const sl_patch *patch, const sl_flatten_wishes *wishes)
+{
+    for (int32_t i = 0; i < wishes->pin_count; i++) {
+        const sl_pin *pin = &wishes->pin[i];
+        if (pin->vertex < 0 || pin->vertex >= patch->nv || !isfinite(pin->uv[0]) || !isfinite(pin->uv[1])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context, double *uv,
                      sl_flatten_result *result)
 {
     sl_status status = SL_OK;
+    sl_sector_table table = {0};
     const bool one_facet = sl_flatten_is_one_facet(patch);
     memset(uv, 0, 2 * (size_t)patch->nv * sizeof *uv);
     *result = (sl_flatten_result){.verdict = SL_CHART_NOT_A_DISK, .certificate.first_edge = {-1, -1}};
+    if (!pins_are_valid(patch, &def->wishes)) {
+        return SL_BAD_INPUT;
+    }
     if (!sl_patch_is_disk(patch)) {
         return SL_OK;
     }
@@ -303,18 +393,20 @@ sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_
                .max_stretch = one_facet ? INFINITY : def->max_stretch,
                .max_angle = one_facet ? INFINITY : def->max_angle,
                .best = uv,
-               .result = result};
-    bool done;
+               .result = result,
+               .abf = def->abf};
     c.map = sl_calloc(2 * (int64_t)patch->nv, sizeof *c.map);
     if (c.map == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    SL_TRY(sl_stretch_list_border(patch, &c.nb, &c.border));
-    SL_TRY(try_plane(&c, one_facet, &done));
-    if (!done) {
-        SL_TRY(flatten_disk(&c));
+    if (is_constrained(def)) {
+        SL_TRY(sl_constraints_compile(patch, def->wishes.constraint_count, def->wishes.constraint, NULL, &table, NULL));
+        c.abf.sectors = &table.view;
     }
+    SL_TRY(sl_stretch_list_border(patch, &c.nb, &c.border));
+    SL_TRY(flatten_chart(&c, one_facet));
 cleanup:
+    sl_sectors_clear(&table);
     sl_free(c.map);
     sl_free(c.border);
     return status;

@@ -5,15 +5,16 @@
 
 #include "overlap/certificate.h"
 #include "param/abf.h"
+#include "param/constraints.h"
 #include "param/distortion.h"
 #include "param/stretch.h"
 
 typedef enum sl_flatten_method {
-    SL_FLATTEN_NONE,  /* not a disk, or nothing worked */
-    SL_FLATTEN_ABF,   /* ABF++ */
-    SL_FLATTEN_LSCM,  /* least squares conformal */
-    SL_FLATTEN_TUTTE, /* Tutte's embedding: reported as a fallback */
-    SL_FLATTEN_PLANAR, /* one facet, or coplanar: projected */
+    SL_FLATTEN_NONE,     /* not a disk, or nothing worked */
+    SL_FLATTEN_ABF,      /* ABF++ */
+    SL_FLATTEN_LSCM,     /* least squares conformal */
+    SL_FLATTEN_TUTTE,    /* Tutte's embedding: reported as a fallback */
+    SL_FLATTEN_PLANAR,   /* one facet, or coplanar: projected */
     SL_FLATTEN_OPTIMISED /* by the caller: a flip-free map that came with the cuts */
 } sl_flatten_method;
 
@@ -28,6 +29,14 @@ typedef enum sl_flatten_verdict {
     SL_CHART_SHEARED    /* the mean of s1/s2 above the bound */
 } sl_flatten_verdict;
 
+/* What a user asks of a chart; arrays borrowed; all zero = nothing. */
+typedef struct sl_flatten_wishes {
+    int32_t constraint_count;
+    const sl_constraint *constraint;
+    int32_t pin_count;
+    const sl_pin *pin;
+} sl_flatten_wishes;
+
 typedef struct sl_flatten_def {
     sl_abf_def abf;
     bool minimise_stretch; /* after ABF++ (or Tutte), while L2 exceeds max_stretch: flip-free minimisation; default true
@@ -38,6 +47,7 @@ typedef struct sl_flatten_def {
     bool polish; /* minimise a chart that ABF++ made valid, too: less stretch for some shear within max_angle; default
                     false */
     sl_stretch_def stretch;
+    sl_flatten_wishes wishes; /* default none */
 } sl_flatten_def;
 
 sl_flatten_def sl_flatten_default(void);
@@ -48,6 +58,8 @@ typedef struct sl_flatten_result {
     bool stretch_minimised;   /* and was it refined afterwards */
     sl_distortion distortion; /* of the map given back */
     sl_certificate certificate;
+    bool constrained;    /* the map keeps the constraints asked for (true when none were) */
+    double pin_distance; /* of the pin furthest from its place [uv units]; 0 = all are there */
     sl_abf_info abf;
     sl_stretch_info stretch;
 } sl_flatten_result;
@@ -58,7 +70,12 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
 
 /* uv: nv x 2, scaled to the patch's 3D area, holds the best map found whatever the verdict (all zero when none), and
  * the verdict is that map's: an embedding that is too stretched goes before one that overlaps, that before one with
- * flips. An invalid chart is an outcome, not an error. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Deterministic.
+ * flips. An invalid chart is an outcome, not an error. SL_BAD_INPUT, SL_INFEASIBLE (constraints or pins, as
+ * sl_constraints_compile says; uv is then zero), SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Deterministic.
+ *
+ * def->wishes: ABF++ and what is minimised from its map keep the constraints, the other methods do not
+ * (result->constrained). Pins are served last, two by a similarity, more by the minimiser, and the scale is then
+ * theirs.
  *
  * Tried in turn until one is valid: projection (vertices within 1e-12 of the extent from one plane); ABF++; LSCM where
  * that did not converge or flipped; flip-free minimisation with a simple border, from that map if it is an embedding of
@@ -74,5 +91,15 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
  * with 3D-degenerate triangles are judged without them for stretch. */
 SL_NODISCARD sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_context *context,
                                   double *uv, sl_flatten_result *result);
+
+/* Minimises the stretch of a flip-free map that keeps constraints, and keeps them: lines stay straight and do not turn,
+ * so that the angles between them stay, too; a prescribed angle of the border stays by the directions of its edges.
+ * Pins, any number, are brought to their places: first by the similarity that fits best, then by the minimiser.
+ * def->line and def->pin are not looked at. uv: in and out; unchanged on failure. SL_BAD_INPUT (flips, lines that are
+ * not straight in uv or run on into each other, pins on lines, other constraints that cannot be), SL_INFEASIBLE (as
+ * sl_constraints_compile), SL_OUT_OF_MEMORY, SL_CANCELLED. info may be NULL. */
+SL_NODISCARD sl_status sl_flatten_relax(const sl_patch *patch, const sl_stretch_def *def,
+                                        const sl_flatten_wishes *wishes, const sl_context *context, double *uv,
+                                        sl_stretch_info *info);
 
 #endif

@@ -5,6 +5,8 @@
 
 #include "mesh/patch.h"
 #include "overlap/certificate.h"
+#include "param/constraints_internal.h"
+#include "param/stretch.h"
 
 /* True when every vertex is within a rounding-sized share (1e-12) of the patch's extent from one plane; uv (nv x 2) is
  * then the orthogonal projection along the patch's vector area, counter-clockwise where the patch is. False when the
@@ -24,5 +26,19 @@ void sl_flatten_scale(const sl_patch *patch, double *uv);
  * map where that one is embedded, and stays so when rounded to 2^-34 of its extent, and uv was not. */
 SL_NODISCARD sl_status sl_flatten_certify(const sl_patch *patch, int32_t nb, const int32_t *border, double *uv,
                                           sl_certificate *out);
+
+/* The lines of a list of constraints for the stretch minimiser, and the two border edges at a prescribed angle as lines
+ * of their own where they are on none. Zero-initialised = empty. */
+typedef struct sl_flatten_lines {
+    sl_line_set set;
+    int32_t count;
+    sl_stretch_line *line;
+    int32_t *edge; /* vertices of the lines that are not of the set, three each */
+} sl_flatten_lines;
+
+/* uv tells which edges run straight on. Statuses as of sl_constraints_compile. */
+SL_NODISCARD sl_status sl_flatten_lines_init(const sl_patch *patch, int32_t count, const sl_constraint *list,
+                                             const double *uv, sl_flatten_lines *out);
+void sl_flatten_lines_clear(sl_flatten_lines *lines);
 
 #endif
