@@ -16,8 +16,9 @@ static const cli_verb verb = {
     .usage = "seamlab render FILE -o OUT.png|OUT.jpg [--view uv|3d|both] [--camera VIEW] [--size WxH]\n"
              "       [--show WORDS] [options]",
     .summary = "Draws a mesh in space, in UV space, or both side by side. --show takes a list of: seams,\n"
-               "checker, charts, overlap, stretch, eigenvector=K, symmetry, constraints; without it seams,\n"
-               "checker and charts. Where a sidecar stands beside a file, copies have their sources' colours.",
+               "checker, charts, overlap, stretch, eigenvector=K, symmetry, visibility, seamcost, constraints;\n"
+               "without it seams, checker and charts. Where a sidecar stands beside a file, copies have their sources' "
+               "colours.",
     .examples = "  seamlab render model-uv.obj -o model.png\n"
                 "  seamlab render model-uv.obj -o front.png --view 3d --camera 20,10 --size 1600x1200\n"
                 "  seamlab render model-uv.obj -o stretch.png --show seams,stretch\n"
@@ -46,13 +47,9 @@ static bool show_word(const char *word, size_t length, cli_show *show)
     const struct {
         const char *name;
         bool *target;
-    } words[] = {{"seams", &show->seams},
-                 {"checker", &show->checker},
-                 {"overlap", &show->overlap},
-                 {"stretch", &show->stretch},
-                 {"charts", &show->charts},
-                 {"symmetry", &show->symmetry},
-                 {"constraints", &show->constraints}};
+    } words[] = {{"seams", &show->seams},           {"checker", &show->checker},   {"overlap", &show->overlap},
+                 {"stretch", &show->stretch},       {"charts", &show->charts},     {"symmetry", &show->symmetry},
+                 {"visibility", &show->visibility}, {"seamcost", &show->seamcost}, {"constraints", &show->constraints}};
     for (size_t k = 0; k < SL_COUNTOF(words); k++) {
         if (length == strlen(words[k].name) && strncmp(word, words[k].name, length) == 0) {
             *words[k].target = true;
@@ -76,16 +73,19 @@ bool cli_show_parse(const char *words, cli_show *show)
         if (!show_word(at, length, show)) {
             fprintf(stderr,
                     "seamlab render: --show does not know '%.*s'; it knows seams, checker, charts, overlap, stretch, "
-                    "eigenvector=K (1 to 1000), symmetry, constraints\n",
+                    "eigenvector=K (1 to 1000), symmetry, visibility, seamcost, constraints\n",
                     (int)length, at);
             return false;
         }
         at += length + (at[length] == ',');
     }
-    const int colors = show->charts + show->stretch + show->symmetry + (show->eigenvector > 0);
+    const int colors =
+        show->charts + show->stretch + show->symmetry + show->visibility + show->seamcost + (show->eigenvector > 0);
     if (colors > 1) {
-        fprintf(stderr, "seamlab render: charts, stretch, eigenvector and symmetry colour the same facets: "
-                        "--show one of them\n");
+        fprintf(
+            stderr,
+            "seamlab render: charts, stretch, eigenvector, symmetry, visibility and seamcost colour the same facets: "
+            "--show one of them\n");
     }
     return colors <= 1;
 }

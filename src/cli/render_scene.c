@@ -240,6 +240,12 @@ static sl_status dress(cli_run *run, const cli_scene_options *o, cli_scene *s, s
     if (show->stretch) {
         SL_TRY(cli_show_stretch(s));
     }
+    if (show->visibility) {
+        SL_TRY(cli_show_visibility(run, s));
+    }
+    if (show->seamcost) {
+        SL_TRY(cli_show_seam_cost(run, s));
+    }
     if (show->eigenvector > 0) {
         SL_TRY(cli_show_eigenvector(run, s, show->eigenvector, diag));
     }

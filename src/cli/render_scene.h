@@ -9,7 +9,7 @@
 
 /* The words of --show. */
 typedef struct cli_show {
-    bool seams, checker, overlap, stretch, charts, constraints, symmetry;
+    bool seams, checker, overlap, stretch, charts, constraints, symmetry, visibility, seamcost;
     int32_t eigenvector; /* 0 = none */
 } cli_show;
 
@@ -57,6 +57,8 @@ void cli_scene_clear(cli_scene *scene);
 
 /* The parts; each fills its arrays and points scene->scene at them. */
 SL_NODISCARD sl_status cli_show_stretch(cli_scene *scene);
+SL_NODISCARD sl_status cli_show_visibility(cli_run *run, cli_scene *scene);
+SL_NODISCARD sl_status cli_show_seam_cost(cli_run *run, cli_scene *scene);
 SL_NODISCARD sl_status cli_show_eigenvector(cli_run *run, cli_scene *scene, int32_t k, sl_diag *diag);
 SL_NODISCARD sl_status cli_show_symmetry(cli_run *run, cli_scene *scene);
 SL_NODISCARD sl_status cli_show_overlap(cli_run *run, cli_scene *scene, int32_t resolution);

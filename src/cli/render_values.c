@@ -4,6 +4,7 @@
 #include "geom/vec3.h"
 #include "mesh/facet_graph.h"
 #include "mesh/topology.h"
+#include "seamcost/seamcost.h"
 #include "spectral/spectrum.h"
 #include "symmetry/symmetry.h"
 
@@ -114,6 +115,54 @@ sl_status cli_show_stretch(cli_scene *s)
     s->scene.value_lo = 1.0;
     s->scene.value_hi = fmax(high, least_range);
     s->value_name = "stretch max(s1, 1/s2)";
+    return status;
+}
+
+static const double paired_enough = 0.9; /* share of triangles in pairs from which a mesh counts as quads */
+
+/* Values in [0, 1] for the facets to come. */
+static sl_status begin_shares(cli_scene *s, const char *name)
+{
+    s->facet_value = sl_alloc(s->mesh->nf, sizeof *s->facet_value);
+    s->scene.facet_value = s->facet_value;
+    s->scene.map = SL_COLORMAP_SEQUENTIAL;
+    s->scene.value_lo = 0.0;
+    s->scene.value_hi = 1.0;
+    s->value_name = name;
+    return s->facet_value != NULL ? SL_OK : SL_OUT_OF_MEMORY;
+}
+
+sl_status cli_show_visibility(cli_run *run, cli_scene *s)
+{
+    const sl_ambient_def def = sl_ambient_default();
+    const sl_status status = begin_shares(s, "ambient visibility");
+    return status == SL_OK ? sl_ambient_compute(s->mesh, &def, &run->context, s->facet_value) : status;
+}
+
+/* The mean weight of a facet's edges. */
+sl_status cli_show_seam_cost(cli_run *run, cli_scene *s)
+{
+    sl_status status = SL_OK;
+    double fraction;
+    const sl_mesh *m = s->mesh;
+    sl_seam_cost_def def = sl_seam_cost_default();
+    double *weight = sl_alloc(m->nh, sizeof *weight);
+    int32_t *partner = sl_alloc(m->nf, sizeof *partner);
+    SL_TRY(weight != NULL && partner != NULL ? begin_shares(s, "what a seam costs, over its length")
+                                             : SL_OUT_OF_MEMORY);
+    SL_TRY(sl_pair_triangles(m, partner, &fraction));
+    def.partner = fraction >= paired_enough ? partner : NULL;
+    SL_TRY(sl_seam_cost_compute(m, &def, &run->context, weight));
+    for (int32_t f = 0; f < m->nf; f++) {
+        double sum = 0.0;
+        for (int32_t h = m->face_first[f]; h < m->face_first[f + 1]; h++) {
+            sum += weight[h];
+        }
+        s->facet_value[f] = sum / sl_degree(m, f);
+    }
+cleanup:
+    sl_free(weight);
+    sl_free(partner);
     return status;
 }
 

@@ -97,6 +97,10 @@ expect 3 "$seamlab" render thumbs.obj -o no.png --size 80x40 --constraints lines
 expect 0 "$seamlab" segment $mesh --animate splits.png --quiet
 grep -qa acTL splits.png && grep -qa fdAT splits.png || complain "splits.png is no animation"
 expect 2 "$seamlab" segment $mesh --animate splits.gif
+expect 0 "$seamlab" render $mesh -o seen.png --view 3d --size 90x90 --show visibility --quiet
+expect 0 "$seamlab" render $mesh -o cost.png --view 3d --size 90x90 --show seams,seamcost --quiet
+cmp -s seen.png cost.png && complain "visibility and seamcost show the same"
+expect 2 "$seamlab" render $mesh -o no.png --show visibility,seamcost
 expect 2 "$seamlab" render $mesh
 expect 2 "$seamlab" render $mesh -o no.gif
 expect 2 "$seamlab" render $mesh -o no.png --size 0x9
