@@ -17,8 +17,8 @@ static const cli_verb verb = {
              "       [--show WORDS] [options]",
     .summary = "Draws a mesh in space, in UV space, or both side by side. --show takes a list of: seams,\n"
                "checker, charts, overlap, stretch, eigenvector=K, symmetry, visibility, seamcost, constraints;\n"
-               "without it seams, checker and charts. Where a sidecar stands beside a file, copies have their sources' "
-               "colours.",
+               "without it seams, checker and charts. Where a sidecar stands beside a file, copies have\n"
+               "their sources' colours.",
     .examples = "  seamlab render model-uv.obj -o model.png\n"
                 "  seamlab render model-uv.obj -o front.png --view 3d --camera 20,10 --size 1600x1200\n"
                 "  seamlab render model-uv.obj -o stretch.png --show seams,stretch\n"
