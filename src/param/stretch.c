@@ -202,6 +202,7 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     s->patch = patch;
     s->def = *def;
     s->store = sl_stretch_store_borrow(def->workspace, &s->own);
+    SL_TRY(sl_stretch_pull_is_valid(def, patch->nv) ? SL_OK : SL_BAD_INPUT);
     SL_TRY(lay_out(s));
     if (def->simple_border) {
         SL_TRY(sl_stretch_list_border(patch, &s->nb, &s->border));
@@ -209,7 +210,6 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     SL_TRY(sl_stretch_rest_init(patch, &s->store->rest));
     SL_TRY(start(s, uv));
     SL_TRY(sl_stretch_freedom_init(patch, def, uv, &s->freedom));
-    SL_TRY(sl_stretch_pull_is_valid(def, &s->freedom) ? SL_OK : SL_BAD_INPUT);
     *out = s;
     s = NULL;
 cleanup:

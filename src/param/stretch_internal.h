@@ -60,7 +60,7 @@ bool sl_stretch_holds_places(const sl_patch *patch, const sl_stretch_def *def);
 
 /* Springs from the pins to their places, energy PULL/2 times the squared distances over the area of the rest shapes.
  * sl_stretch_pull_is_valid: every pin in range, at a finite place, of a vertex free to move and of no other pin. */
-bool sl_stretch_pull_is_valid(const sl_stretch_def *def, const sl_stretch_freedom *freedom);
+bool sl_stretch_pull_is_valid(const sl_stretch_def *def, int32_t nv);
 double sl_stretch_pull_energy(const sl_stretch_def *def, double area, const double *uv);
 double sl_stretch_pull_distance(const sl_stretch_def *def, const double *uv); /* the largest */
 

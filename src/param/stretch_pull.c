@@ -18,11 +18,11 @@ static bool is_on_line(const sl_stretch_def *def, int32_t vertex)
     return false;
 }
 
-bool sl_stretch_pull_is_valid(const sl_stretch_def *def, const sl_stretch_freedom *freedom)
+bool sl_stretch_pull_is_valid(const sl_stretch_def *def, int32_t nv)
 {
     for (int32_t i = 0; i < def->pin_count; i++) {
         const sl_pin *pin = &def->pin[i];
-        if (pin->vertex < 0 || pin->vertex >= freedom->nv || !isfinite(pin->uv[0]) || !isfinite(pin->uv[1])) {
+        if (pin->vertex < 0 || pin->vertex >= nv || !isfinite(pin->uv[0]) || !isfinite(pin->uv[1])) {
             return false;
         }
         if ((def->fixed != NULL && def->fixed[pin->vertex] != 0) || is_on_line(def, pin->vertex)) {
