@@ -141,7 +141,7 @@ sl_status sl_camera_frame(const sl_view *view, double aspect, int64_t count, con
 {
     if (!in_range(view->azimuth, -1e6, 1e6) || !in_range(view->elevation, -90.0, 90.0) ||
         !in_range(view->fov, 0.0, 120.0) || !in_range(view->margin, 0.0, 0.4) || view->up_axis < 0 ||
-        view->up_axis > 2 || !in_range(aspect, 1e-4, 1e4)) {
+        view->up_axis > 2 || !in_range(aspect, 1e-5, 1e5)) {
         return SL_BAD_INPUT;
     }
     const double usable_height = 1.0 - 2.0 * view->margin - view->top - view->bottom;

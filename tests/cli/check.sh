@@ -52,7 +52,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure compare overlap segment spectrum abf render theorem demo; do
+for verb in unwrap check measure pack compare overlap segment spectrum abf render theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -94,6 +94,23 @@ printf '3 2\n' >lines.txt
 expect 0 "$seamlab" render thumbs.obj -o lines.png --size 80x40 --constraints lines.txt --quiet
 printf '0 4\n' >lines.txt
 expect 3 "$seamlab" render thumbs.obj -o no.png --size 80x40 --constraints lines.txt --quiet
+# Sizes and UVs out of the ordinary.
+expect 0 "$seamlab" render $mesh -o point.png --size 1x1 --quiet
+expect 0 "$seamlab" render $mesh -o wide.png --view 3d --size 16384x1 --samples 1 --no-shadows --quiet
+expect 0 "$seamlab" render $mesh -o high.png --view uv --size 1x16384 --samples 1 --quiet
+expect 0 "$seamlab" overlap $mesh --resolution 1
+expect 0 "$seamlab" overlap $mesh --resolution 16384
+expect 2 "$seamlab" overlap $mesh --resolution 16385
+expect 2 "$seamlab" render $mesh -o no.png --size 16385x1
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nvt %s 0\nvt 1 0\nvt 0 1\nvt 1 1\nf 1/1 2/2 3/3\nf 2/2 4/4 3/3\n' nan >nan.obj
+sed 's/vt nan 0/vt 1e9 -1e12/' nan.obj >far.obj
+grep -v '^f' nan.obj >points.obj
+expect 3 "$seamlab" overlap nan.obj
+expect 0 "$seamlab" render nan.obj -o nan.png --size 40x20
+expect 0 "$seamlab" overlap far.obj --exact
+expect 0 "$seamlab" render far.obj -o far.png --size 40x20
+expect 3 "$seamlab" overlap points.obj
+expect 3 "$seamlab" render points.obj -o no.png
 expect 0 "$seamlab" segment $mesh --animate splits.png --quiet
 grep -qa acTL splits.png && grep -qa fdAT splits.png || complain "splits.png is no animation"
 expect 2 "$seamlab" segment $mesh --animate splits.gif
