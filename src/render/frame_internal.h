@@ -91,7 +91,7 @@ struct sl_frame {
 const sl_frame_kernels *sl_frame_kernels_best(void);
 const sl_frame_kernels *sl_frame_kernels_at(int32_t k);
 
-extern const sl_frame_kernels sl_frame_kernels_portable, sl_frame_kernels_avx2;
+extern const sl_frame_kernels sl_frame_kernels_portable, sl_frame_kernels_sse2, sl_frame_kernels_avx2;
 
 /* Projects the vertices and sorts the triangles into bands. */
 SL_NODISCARD sl_status sl_frame_project(sl_frame *frame, const sl_context *context);

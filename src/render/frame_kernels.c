@@ -6,7 +6,10 @@ const sl_frame_kernels *sl_frame_kernels_at(int32_t k)
         return &sl_frame_kernels_portable;
     }
 #if defined(__x86_64__)
-    if (k == 1 && __builtin_cpu_supports("avx2")) {
+    if (k == 1) {
+        return &sl_frame_kernels_sse2;
+    }
+    if (k == 2 && __builtin_cpu_supports("avx2")) {
         return &sl_frame_kernels_avx2;
     }
 #endif

@@ -1,6 +1,6 @@
-/* Eight numbers at a time. The kernels of the frame are written once, in these terms, and compiled twice: for the
- * registers of AVX2 and for any machine. Every operation is one of IEEE 754 or of integers, so both give the same
- * bytes.
+/* Eight numbers at a time. The kernels of the frame are written once, in these terms, and compiled three times:
+ * for the registers of AVX2, for those of SSE2 and for any machine. Every operation is one of IEEE 754 or of integers,
+ * so both give the same bytes.
  *
  *     f8_min(a, b)    a < b ? a : b, so b where one is NaN; f8_max alike
  *     f8_whole        towards 0; what does not fit has no meaning
@@ -11,7 +11,7 @@
  *     i8_tint         four bytes a lane, as tint
  *     four_words      out[i], lane k = word i of those at base + at[k] bytes; put_four_words: to rows a stride apart
  *
- * SL_LANES_AVX2 chooses. Layer: render, private. */
+ * SL_LANES_AVX2 or SL_LANES_SSE2 chooses. Layer: render, private. */
 #ifndef SL_RENDER_FRAME_LANES_H
 #define SL_RENDER_FRAME_LANES_H
 
@@ -48,6 +48,8 @@ static inline uint32_t tint(uint32_t color, uint32_t power)
 
 #if defined(SL_LANES_AVX2)
 #include "render/frame_doubles_avx2.h"
+#elif defined(SL_LANES_SSE2)
+#include "render/frame_doubles_sse2.h"
 #else
 #include "render/frame_doubles_portable.h"
 #endif

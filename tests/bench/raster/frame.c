@@ -1,53 +1,37 @@
 /* A frame of 1280 x 800 with depth, Gouraud light and a filtered checkerboard: ours against llvmpipe, in turns. Both
- * keep the mesh; a frame is from the new camera to the pixels in memory. CPU time of the process, the least of the
- * runs. frame [RUNS] [THREADS of llvmpipe] */
+ * keep the mesh; a frame is from the new camera to the pixels in memory. CPU time of the process: medians of the turns,
+ * ratios turn by turn. Then what a frame costs as JPEG.
+ *   frame [--runs R] [--max-triangles N] [--lp-threads T] [--csv FILE]                                               */
 #define _POSIX_C_SOURCE 200809L
-#include "render/frame.h"
 #include "base/memory.h"
+#include "bench/raster/frame_pipe.h"
 #include "image/jpeg.h"
+#include "render/frame_internal.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <GLES3/gl3.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { WIDTH = 1280, HEIGHT = 800, FLOATS = 8 };
+enum { MOST_RUNS = 1000 };
 
-static const char vertex_source[] =
-    "#version 300 es\n"
-    "layout(location = 0) in vec3 p; layout(location = 1) in vec3 n; layout(location = 2) in vec2 t;\n"
-    "uniform vec3 eye, right, up, ahead, sun; uniform vec4 lens;\n"
-    "out float light; out vec2 uv;\n"
-    "void main() {\n"
-    "  vec3 q = p - eye; float x = dot(q, right), y = dot(q, up), z = dot(q, ahead);\n"
-    "  gl_Position = vec4(lens.x * x, lens.y * y, lens.z * z + lens.w, z);\n"
-    "  light = 0.34 + 0.62 * max(0.25 + 0.75 * dot(normalize(n), sun), 0.0); uv = 48.0 * t;\n"
-    "}\n";
-static const char fragment_source[] = "#version 300 es\n"
-                                      "precision highp float;\n"
-                                      "in float light; in vec2 uv; out vec4 color;\n"
-                                      "vec2 wave(vec2 x) { return abs(x - 2.0 * round(0.5 * x)); }\n"
-                                      "void main() {\n"
-                                      "  vec2 w = max(max(abs(dFdx(uv)), abs(dFdy(uv))), 1e-4);\n"
-                                      "  vec2 m = clamp((wave(uv + 0.5 * w) - wave(uv - 0.5 * w)) / w, -1.0, 1.0);\n"
-                                      "  float s = 0.63 * light * (0.84 + 0.16 * m.x * m.y);\n"
-                                      "  color = vec4(vec3(pow(clamp(s, 0.0, 1.0), 0.4545)), 1.0);\n"
-                                      "}\n";
+typedef struct options {
+    int32_t runs, most;
+    const char *threads, *csv;
+} options;
 
 typedef struct torus {
     int32_t nv, nt, *tri;
     double *xyz, *uv;
-    float *packed; /* FLOATS a vertex: position, normal, UV */
+    float *packed; /* PIPE_FLOATS a vertex: position, normal, UV */
 } torus;
 
-typedef struct pipe {
-    GLuint program;
-    GLsizei indices;
-} pipe;
+/* Milliseconds of the turns, and what llvmpipe takes in times ours. */
+typedef struct turns {
+    double pipe[MOST_RUNS], ours[MOST_RUNS], plain[MOST_RUNS], jpeg[MOST_RUNS];
+    double times[MOST_RUNS], plain_times[MOST_RUNS];
+} turns;
 
 static double cpu_ms(void)
 {
@@ -64,7 +48,7 @@ static torus make_torus(int32_t n)
     m.tri = sl_alloc(m.nt, 3 * sizeof *m.tri);
     m.xyz = sl_alloc(m.nv, 3 * sizeof *m.xyz);
     m.uv = sl_alloc(m.nt, 6 * sizeof *m.uv);
-    m.packed = sl_calloc(m.nv, FLOATS * sizeof *m.packed);
+    m.packed = sl_calloc(m.nv, PIPE_FLOATS * sizeof *m.packed);
     if (m.tri == NULL || m.xyz == NULL || m.uv == NULL || m.packed == NULL) {
         exit(1);
     }
@@ -75,11 +59,11 @@ static torus make_torus(int32_t n)
         const double up[3] = {cos(b) * cos(a), sin(b), cos(b) * sin(a)};
         for (int k = 0; k < 3; k++) {
             m.xyz[3 * v + k] = p[k];
-            m.packed[FLOATS * v + k] = (float)p[k];
-            m.packed[FLOATS * v + 3 + k] = (float)up[k];
+            m.packed[PIPE_FLOATS * v + k] = (float)p[k];
+            m.packed[PIPE_FLOATS * v + 3 + k] = (float)up[k];
         }
-        m.packed[FLOATS * v + 6] = (float)(v % n) / (float)n;
-        m.packed[FLOATS * v + 7] = (float)(v / n) / (float)n;
+        m.packed[PIPE_FLOATS * v + 6] = (float)(v % n) / (float)n;
+        m.packed[PIPE_FLOATS * v + 7] = (float)(v / n) / (float)n;
     }
     for (int32_t q = 0; q < m.nv; q++) {
         const int32_t right = q / n * n + (q + 1) % n, below = (q / n + 1) % n * n + q % n;
@@ -95,183 +79,186 @@ static torus make_torus(int32_t n)
     return m;
 }
 
-static bool open_context(void)
+static void free_torus(torus *m)
 {
-    static const EGLint config_wish[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
-    static const EGLint context_wish[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
-    EGLConfig config;
-    EGLint count = 0, major, minor;
-    const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
-    if (!eglInitialize(display, &major, &minor) || !eglBindAPI(EGL_OPENGL_ES_API) ||
-        !eglChooseConfig(display, config_wish, &config, 1, &count) || count < 1) {
-        return false;
-    }
-    const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_wish);
-    return context != EGL_NO_CONTEXT && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    sl_free(m->tri);
+    sl_free(m->xyz);
+    sl_free(m->uv);
+    sl_free(m->packed);
 }
 
-static GLuint compile(GLenum kind, const char *source)
+static int compare(const void *a, const void *b)
 {
-    const GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, NULL);
-    glCompileShader(shader);
-    return shader;
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 
-static bool open_pipe(pipe *p)
+static double median(double *values, int32_t count)
 {
-    GLuint frame, storage[2];
-    GLint linked = 0;
-    p->program = glCreateProgram();
-    glAttachShader(p->program, compile(GL_VERTEX_SHADER, vertex_source));
-    glAttachShader(p->program, compile(GL_FRAGMENT_SHADER, fragment_source));
-    glLinkProgram(p->program);
-    glGetProgramiv(p->program, GL_LINK_STATUS, &linked);
-    glUseProgram(p->program);
-    glGenFramebuffers(1, &frame);
-    glBindFramebuffer(GL_FRAMEBUFFER, frame);
-    glGenRenderbuffers(2, storage);
-    glBindRenderbuffer(GL_RENDERBUFFER, storage[0]);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, WIDTH, HEIGHT);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, storage[0]);
-    glBindRenderbuffer(GL_RENDERBUFFER, storage[1]);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, WIDTH, HEIGHT);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, storage[1]);
-    glViewport(0, 0, WIDTH, HEIGHT);
-    glEnable(GL_DEPTH_TEST);
-    glClearColor(0.965f, 0.965f, 0.957f, 1.0f);
-    return linked != 0 && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-}
-
-static void load_mesh(pipe *p, const torus *m)
-{
-    static const int size[3] = {3, 3, 2};
-    static const uintptr_t start[3] = {0, 12, 24};
-    GLuint buffer[2];
-    glGenBuffers(2, buffer);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer[0]);
-    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)m->nv * FLOATS * (GLsizeiptr)sizeof(float), m->packed, GL_STATIC_DRAW);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer[1]);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)m->nt * 3 * (GLsizeiptr)sizeof(int32_t), m->tri, GL_STATIC_DRAW);
-    for (GLuint k = 0; k < 3; k++) {
-        glEnableVertexAttribArray(k);
-        glVertexAttribPointer(k, size[k], GL_FLOAT, GL_FALSE, FLOATS * (GLsizei)sizeof(float), (const void *)start[k]);
-    }
-    p->indices = 3 * m->nt;
-}
-
-static void set_vector(const pipe *p, const char *name, const double v[3])
-{
-    glUniform3f(glGetUniformLocation(p->program, name), (float)v[0], (float)v[1], (float)v[2]);
-}
-
-static bool pipe_draw(const pipe *p, const sl_camera *c, bool cull, uint8_t *rgba)
-{
-    const double far = 20.0, near = 0.5;
-    double sun[3];
-    for (int k = 0; k < 3; k++) {
-        sun[k] = -0.42 * c->right[k] + 0.62 * c->up[k] - 0.66 * c->forward[k];
-    }
-    set_vector(p, "eye", c->eye);
-    set_vector(p, "right", c->right);
-    set_vector(p, "up", c->up);
-    set_vector(p, "ahead", c->forward);
-    set_vector(p, "sun", sun);
-    glUniform4f(glGetUniformLocation(p->program, "lens"), (float)(2.0 * c->focal * HEIGHT / WIDTH),
-                (float)(2.0 * c->focal), (float)((far + near) / (far - near)),
-                (float)(-2.0 * far * near / (far - near)));
-    if (cull) {
-        glEnable(GL_CULL_FACE);
-    } else {
-        glDisable(GL_CULL_FACE);
-    }
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glDrawElements(GL_TRIANGLES, p->indices, GL_UNSIGNED_INT, NULL);
-    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
-    return glGetError() == GL_NO_ERROR;
+    qsort(values, (size_t)count, sizeof *values, compare);
+    return values[count / 2];
 }
 
 /* Share of the pixels that are background in one and not in the other: are the same things drawn? */
 static double unlike(const uint8_t *ours, const uint8_t *theirs)
 {
     int64_t count = 0;
-    for (int32_t y = 0; y < HEIGHT; y++) {
-        for (int32_t x = 0; x < WIDTH; x++) {
-            const uint8_t *a = ours + 4 * (y * WIDTH + x), *b = theirs + 4 * ((HEIGHT - 1 - y) * WIDTH + x);
+    for (int32_t y = 0; y < PIPE_HEIGHT; y++) {
+        for (int32_t x = 0; x < PIPE_WIDTH; x++) {
+            const uint8_t *a = ours + 4 * (y * PIPE_WIDTH + x);
+            const uint8_t *b = theirs + 4 * ((PIPE_HEIGHT - 1 - y) * PIPE_WIDTH + x);
             count += (a[0] == 246) != (b[0] == 246);
         }
     }
-    return (double)count / ((double)WIDTH * HEIGHT);
+    return (double)count / ((double)PIPE_WIDTH * PIPE_HEIGHT);
 }
 
-static int race(pipe *p, int32_t n, int runs)
+static bool take_turn(const pipe *p, const torus *m, sl_frame *frame, bool cull, int32_t k, sl_image *const picture[2],
+                      turns *took)
 {
-    const torus m = make_torus(n);
+    sl_view view = sl_view_default();
+    sl_camera camera;
+    sl_frame_style style = sl_frame_style_default();
+    uint8_t *jpeg = NULL;
+    int64_t size = 0;
+    view.azimuth += 0.01 * k;
+    style.cull = cull;
+    if (sl_camera_frame(&view, (double)PIPE_WIDTH / PIPE_HEIGHT, m->nv, NULL, m->xyz, &camera) != SL_OK) {
+        return false;
+    }
+    double at[5] = {cpu_ms()};
+    bool good = pipe_draw(p, &camera, cull, picture[1]->pixels);
+    at[1] = cpu_ms();
+    frame->kernels =
+        sl_frame_kernels_at(1) != NULL ? sl_frame_kernels_at(1) : sl_frame_kernels_at(0); /* without AVX2 */
+    good = good && sl_frame_draw(frame, &camera, &style, PIPE_WIDTH, PIPE_HEIGHT, NULL, picture[0]->pixels) == SL_OK;
+    at[2] = cpu_ms();
+    frame->kernels = sl_frame_kernels_best();
+    good = good && sl_frame_draw(frame, &camera, &style, PIPE_WIDTH, PIPE_HEIGHT, NULL, picture[0]->pixels) == SL_OK;
+    at[3] = cpu_ms();
+    good = good && sl_jpeg_encode(picture[0], SL_JPEG_QUALITY, false, &jpeg, &size) == SL_OK;
+    at[4] = cpu_ms();
+    took->pipe[k] = at[1] - at[0];
+    took->plain[k] = at[2] - at[1];
+    took->ours[k] = at[3] - at[2];
+    took->jpeg[k] = at[4] - at[3];
+    took->times[k] = took->pipe[k] / took->ours[k];
+    took->plain_times[k] = took->pipe[k] / took->plain[k];
+    sl_free(jpeg);
+    return good;
+}
+
+static void report(const torus *m, bool cull, int32_t runs, turns *t, double unlike_share, FILE *csv)
+{
+    const double theirs = median(t->pipe, runs), ours = median(t->ours, runs), plain = median(t->plain, runs);
+    const double jpeg = median(t->jpeg, runs), times = median(t->times, runs);
+    const double plain_times = median(t->plain_times, runs), rate = 1e3 / (ours + jpeg);
+    printf("%9d  %-6s  %8.2f  %8.2f  %8.2f  %5.2f  %8.2f  %6.2f  %9.1f  %10.6f\n", m->nt, cull ? "yes" : "no", theirs,
+           ours, plain, times, plain_times, jpeg, rate, unlike_share);
+    if (csv != NULL) {
+        fprintf(csv, "%d,%d,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.6f\n", m->nt, cull, theirs, ours, plain, times,
+                plain_times, jpeg, rate, unlike_share);
+    }
+}
+
+/* What frames cost and lose as JPEG: of the picture drawn last. */
+static bool report_jpeg(const sl_image *image, int32_t runs)
+{
+    static const int32_t qualities[] = {75, 85, 90, 95};
+    printf("\njpeg of a frame    quality  chroma      ms       kB  PSNR dB\n");
+    for (int32_t i = 0; i < 2 * (int32_t)SL_COUNTOF(qualities); i++) {
+        double took[MOST_RUNS], sum = 0.0;
+        uint8_t *data = NULL;
+        int64_t size = 0;
+        sl_image *back = NULL;
+        for (int32_t k = 0; k < runs; k++) {
+            sl_free(data);
+            const double start = cpu_ms();
+            if (sl_jpeg_encode(image, qualities[i / 2], i % 2 != 0, &data, &size) != SL_OK) {
+                return false;
+            }
+            took[k] = cpu_ms() - start;
+        }
+        if (sl_jpeg_decode("frame", data, size, &back, NULL) != SL_OK) {
+            return false;
+        }
+        for (int64_t p = 0; p < 3 * (int64_t)PIPE_WIDTH * PIPE_HEIGHT; p++) {
+            const double d = (double)back->pixels[p] - image->pixels[p / 3 * 4 + p % 3];
+            sum += d * d;
+        }
+        printf("%26d  %6s  %6.2f  %7.1f  %7.1f\n", qualities[i / 2], i % 2 != 0 ? "4:4:4" : "4:2:0", median(took, runs),
+               (double)size / 1e3, 10.0 * log10(255.0 * 255.0 * 3.0 * PIPE_WIDTH * PIPE_HEIGHT / sum));
+        sl_image_free(back);
+        sl_free(data);
+    }
+    return true;
+}
+
+static bool race(pipe *p, int32_t side, const options *o, bool jpeg, FILE *csv)
+{
+    static turns took;
+    torus m = make_torus(side);
     const sl_frame_def def = {m.nv, m.nt, m.xyz, m.tri, m.uv, NULL};
     sl_frame *frame = NULL;
-    sl_image *ours = NULL, *theirs = NULL;
-    load_mesh(p, &m);
-    if (sl_frame_create(&def, &frame) != SL_OK || sl_image_create(WIDTH, HEIGHT, 4, &ours) != SL_OK ||
-        sl_image_create(WIDTH, HEIGHT, 4, &theirs) != SL_OK) {
-        return 1;
-    }
-    for (int cull = 0; cull < 2; cull++) {
-        double least[3] = {1e9, 1e9, 1e9};
-        for (int k = 0; k < runs; k++) {
-            sl_view view = sl_view_default();
-            sl_camera camera;
-            sl_frame_style style = sl_frame_style_default();
-            uint8_t *jpeg = NULL;
-            int64_t size = 0;
-            view.azimuth += 0.01 * k;
-            style.cull = cull != 0;
-            if (sl_camera_frame(&view, (double)WIDTH / HEIGHT, m.nv, NULL, m.xyz, &camera) != SL_OK) {
-                return 1;
-            }
-            const double t0 = cpu_ms();
-            const bool drawn = pipe_draw(p, &camera, style.cull, theirs->pixels);
-            const double t1 = cpu_ms();
-            const sl_status status = sl_frame_draw(frame, &camera, &style, WIDTH, HEIGHT, NULL, ours->pixels);
-            const double t2 = cpu_ms();
-            if (!drawn || status != SL_OK || sl_jpeg_encode(ours, SL_JPEG_QUALITY, false, &jpeg, &size) != SL_OK) {
-                return 1;
-            }
-            const double t3 = cpu_ms(), took[3] = {t1 - t0, t2 - t1, t3 - t2};
-            for (int i = 0; i < 3; i++) {
-                least[i] = took[i] < least[i] ? took[i] : least[i];
-            }
-            sl_free(jpeg);
+    sl_image *picture[2] = {NULL, NULL};
+    pipe_load(p, m.nv, m.packed, m.nt, m.tri);
+    bool good = sl_frame_create(&def, &frame) == SL_OK &&
+                sl_image_create(PIPE_WIDTH, PIPE_HEIGHT, 4, &picture[0]) == SL_OK &&
+                sl_image_create(PIPE_WIDTH, PIPE_HEIGHT, 4, &picture[1]) == SL_OK;
+    for (int cull = 0; cull < 2 && good; cull++) {
+        for (int32_t k = 0; k < o->runs && good; k++) {
+            good = take_turn(p, &m, frame, cull != 0, k, picture, &took);
         }
-        printf("%8d  %-6s  %9.2f  %9.2f  %6.2f  %9.2f  %10.5f\n", m.nt, cull != 0 ? "yes" : "no", least[0], least[1],
-               least[0] / least[1], least[2], unlike(ours->pixels, theirs->pixels));
+        if (good) {
+            report(&m, cull != 0, o->runs, &took, unlike(picture[0]->pixels, picture[1]->pixels), csv);
+        }
     }
-    sl_image_free(ours);
-    sl_image_free(theirs);
+    good = good && (!jpeg || report_jpeg(picture[0], o->runs));
+    sl_image_free(picture[0]);
+    sl_image_free(picture[1]);
     sl_frame_free(frame);
-    sl_free(m.tri);
-    sl_free(m.xyz);
-    sl_free(m.uv);
-    sl_free(m.packed);
-    return 0;
+    free_torus(&m);
+    return good;
+}
+
+static int32_t number(const char *text, int32_t least, int32_t most)
+{
+    const long value = strtol(text, NULL, 10);
+    return value < least ? least : value > most ? most : (int32_t)value;
 }
 
 int main(int argc, char **argv)
 {
-    static const int32_t sides[] = {186, 373, 745};
-    pipe p;
+    static const int32_t sides[] = {93, 186, 373, 745};
+    options o = {.runs = 25, .most = INT32_MAX, .threads = "0"};
+    pipe p = {0};
+    for (int k = 1; k + 1 < argc; k += 2) {
+        o.runs = strcmp(argv[k], "--runs") == 0 ? number(argv[k + 1], 1, MOST_RUNS) : o.runs;
+        o.most = strcmp(argv[k], "--max-triangles") == 0 ? number(argv[k + 1], 1, INT32_MAX) : o.most;
+        o.threads = strcmp(argv[k], "--lp-threads") == 0 ? argv[k + 1] : o.threads;
+        o.csv = strcmp(argv[k], "--csv") == 0 ? argv[k + 1] : o.csv;
+    }
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-    setenv("LP_NUM_THREADS", argc > 2 ? argv[2] : "0", 1);
-    if (!open_context() || !open_pipe(&p)) {
+    setenv("LP_NUM_THREADS", o.threads, 1);
+    if (!pipe_open(&p)) {
         fprintf(stderr, "no OpenGL ES 3 without a display here\n");
         return 77;
     }
-    printf("%s\ntriangles culled   llvmpipe       ours   ratio       jpeg  silhouette\n",
-           (const char *)glGetString(GL_RENDERER));
-    for (size_t k = 0; k < SL_COUNTOF(sides); k++) {
-        if (race(&p, sides[k], argc > 1 ? atoi(argv[1]) : 15) != 0) {
-            return 1;
+    FILE *csv = o.csv != NULL ? fopen(o.csv, "w") : NULL;
+    if (csv != NULL) {
+        fprintf(csv, "triangles,culled,llvmpipe,ours,plain,times,plain_times,jpeg,frames_a_second,unlike\n");
+    }
+    printf("%s; ours: %s\n", (const char *)glGetString(GL_RENDERER), sl_frame_kernels_best()->name);
+    printf("triangles  culled  llvmpipe      ours     plain  times     plain    jpeg  frames/s     unlike\n");
+    bool good = true;
+    for (size_t k = 0; k < SL_COUNTOF(sides) && good; k++) {
+        if (2 * sides[k] * sides[k] <= o.most) {
+            good = race(&p, sides[k], &o, sides[k] == 186, csv);
         }
     }
-    return 0;
+    if (csv != NULL) {
+        fclose(csv);
+    }
+    return good ? 0 : 1;
 }
