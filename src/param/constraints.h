@@ -48,6 +48,24 @@ typedef struct sl_constraint {
 SL_NODISCARD sl_status sl_constraints_compile(const sl_patch *patch, int32_t count, const sl_constraint *list,
                                               const int32_t *name, sl_sector_table *out, sl_diag *diag);
 
+/**
+ * Seams that meet at a point of the surface at right angles: what each chart around it takes its share as.
+ *
+ * Two lines of seams cross where four charts meet: pi/2 in each. Where one ends on the other, three meet: pi/2 in two
+ * and pi in the chart that is the widest there on the surface; along a seam two meet: pi in each, which keeps it
+ * straight. A chart that comes to the point twice is listed twice, at its two border vertices.
+ *
+ * @param[in]  count  charts around the point, 2 to 4
+ * @param[in]  patch  count of them; borrowed
+ * @param[in]  vertex count: the point in patch[k], on its border; borrowed by the constraints
+ * @param[out] item   count: item[k] is for patch[k], SL_CONSTRAINT_ANGLE at vertex[k]
+ *
+ * The charts are then solved one by one. SL_BAD_INPUT: a vertex out of range or not on the border. SL_INFEASIBLE: fewer
+ * than two or more than four charts; a chart with fewer triangles there than its share takes (one of pi needs two).
+ * diag (nullable): which. Allocates nothing. Source: What you seam is what you get, Sec. 4.2. */
+SL_NODISCARD sl_status sl_constraints_cross_seams(int32_t count, const sl_patch *const *patch, const int32_t *vertex,
+                                                  sl_constraint *item, sl_diag *diag);
+
 /* How well a layout does what one constraint asks. */
 typedef struct sl_constraint_measure {
     double angle; /* largest |planar angle - prescribed| over the sectors it made and, of ANGLE and RIGHT, over those
