@@ -6,9 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-static const int32_t PROBE_STEPS = 5;
+static const int32_t PROBE_STEPS = 4;
 static const double LEAST_GAIN = 1e-3; /* of a whole budget: below it nothing is gained */
-static const double LEAST_PRICE = 1e-6;
+static const double CUT_PRICE =
+    0.1; /* of any cut, in seam length over sqrt(area): else seams are made an edge at a time */
 static const int BALANCE_EVERY = 3; /* cuts */
 
 /* The candidates of all charts, those of a chart until it changes. */
@@ -145,7 +146,7 @@ static double score(const sl_opt_state *state, const sl_opt_trial *trial, double
     if (!trial->valid || !(gain > LEAST_GAIN)) {
         return 0.0;
     }
-    return fmin(gain, wanted) / fmax(price, LEAST_PRICE);
+    return fmin(gain, wanted) / (CUT_PRICE + price);
 }
 
 /* The best candidate, solved to the end; *taken = -1 = none is left. */
@@ -165,13 +166,10 @@ static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
         if (best < 0) {
             break;
         }
-        if (!p->trial[best].settled) {
-            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
-        }
-        if (p->trial[best].valid && score(state, &p->trial[best], wanted) > 0.0) {
+        if (p->trial[best].settled) {
             *taken = best;
-        } else {
-            p->trial[best].valid = false;
+        } else { /* it may be worth less than the probe promised, or overlap: then others come first */
+            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
         }
     }
 cleanup:

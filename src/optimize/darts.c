@@ -8,12 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TIPS = 7, CHORDS = 4, BISECTIONS = 2, SCALES = 2 };
-static const double SCALE[SCALES] = {0.03, 0.08}; /* width of the diffusion over sqrt(area of the surface) */
-static const int TIPS_A_SCALE[SCALES] = {4, 3};
-static const int MOST_ROUNDS = 200;     /* of the diffusion */
-static const double TIP_SPACING = 0.06; /* between tips, over sqrt(area of the surface) */
-static const double CHORD_REACH = 0.2;  /* of the border's length between the ends of a chord */
+enum { PEAKS = 3, TIPS = 8, CHORDS = 3, BISECTIONS = 2 };
+static const double FINE = 0.03, COARSE = 0.06; /* widths of the diffusion over sqrt(area of the surface) */
+static const int MOST_ROUNDS = 200;             /* of the diffusion */
+static const double TIP_SPACING = 0.06;         /* between tips, over sqrt(area of the surface) */
+static const double CHORD_REACH = 0.2;          /* of the border's length between the ends of a chord */
 
 /* A chart and what its candidates need. */
 typedef struct dart_field {
@@ -196,14 +195,19 @@ static bool is_near_tip(const dart_field *d, int32_t v)
     return false;
 }
 
-/* The highest peaks that keep their distance, at most `most`. */
-static void choose_tips(dart_field *d, int most)
+/* The highest peaks that keep their distance, or with `deep` the vertices where the loss times the distance from the
+ * border is largest, peaks or not; until there are `most` tips. */
+static void choose_tips(dart_field *d, bool deep, int32_t most)
 {
-    for (int k = 0; k < most && d->ntips < TIPS; k++) {
+    while (d->ntips < most) {
         int32_t best = -1;
+        double value = 0.0;
         for (int32_t v = 0; v < d->patch->nv; v++) {
-            if (is_peak(d, v) && (best < 0 || d->field[v] > d->field[best]) && !is_near_tip(d, v)) {
+            const bool inner = d->patch->border[v] == 0 && d->parent[v] >= 0;
+            const double x = inner ? d->field[v] * (deep ? d->distance[v] : 1.0) : 0.0;
+            if (x > value && (deep || is_peak(d, v)) && !is_near_tip(d, v)) {
                 best = v;
+                value = x;
             }
         }
         if (best < 0) {
@@ -213,19 +217,23 @@ static void choose_tips(dart_field *d, int most)
     }
 }
 
+static int rounds_for(const dart_field *d, double scale, double edge)
+{
+    const double width = edge > 0.0 ? scale * d->state->surface->unit / edge : 0.0;
+    return (int)fmin(fmax(width * width, 2.0), MOST_ROUNDS);
+}
+
 static void find_tips(dart_field *d)
 {
-    const sl_opt_surface *s = d->state->surface;
     double area = 0.0;
     for (int32_t t = 0; t < d->patch->nt; t++) {
-        area += s->area[d->patch->facet[t]];
+        area += d->state->surface->area[d->patch->facet[t]];
     }
     const double edge = sqrt(2.0 * area / d->patch->nt);
-    for (int k = 0; k < SCALES; k++) {
-        const double width = edge > 0.0 ? SCALE[k] * s->unit / edge : 0.0;
-        diffuse(d, (int)fmin(fmax(width * width, 2.0), MOST_ROUNDS));
-        choose_tips(d, TIPS_A_SCALE[k]);
-    }
+    diffuse(d, rounds_for(d, FINE, edge));
+    choose_tips(d, false, PEAKS);
+    diffuse(d, rounds_for(d, COARSE, edge));
+    choose_tips(d, true, TIPS);
 }
 
 static sl_status field_init(const sl_opt_state *state, int32_t c, dart_field *d)

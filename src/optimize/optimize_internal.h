@@ -121,12 +121,23 @@ SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_tri
 /* Replaces the charts of the state by the trial's, which is emptied. SL_OUT_OF_MEMORY leaves all as it was. */
 SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
 
-/* Solves a chart: warm from uv (flip-free) or, where warm is false, from nothing. *embedded = proven. */
-SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, bool warm, double *uv,
+/* How a chart is solved. */
+typedef enum sl_opt_effort {
+    SL_OPT_WARM,      /* from the map at hand; from nothing where that fails */
+    SL_OPT_WARM_ONLY, /* from the map at hand or not at all */
+    SL_OPT_COLD,      /* from nothing; once more with a simple border where that overlaps */
+    SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */
+} sl_opt_effort;
+
+/* Solves a chart. uv: in and out; a map at hand must be flip-free. *embedded = proven. */
+SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
                                     bool *embedded);
 
 /* Solves every chart again with state->w. */
 SL_NODISCARD sl_status sl_opt_resolve(sl_opt_state *state);
+
+/* Lays every chart flat from nothing. *all = false where one has no embedding. */
+SL_NODISCARD sl_status sl_opt_unfold(sl_opt_state *state, bool *all);
 
 /* The weight of the energy that meets both targets best; solves every chart with it. */
 SL_NODISCARD sl_status sl_opt_balance(sl_opt_state *state);
@@ -140,8 +151,24 @@ SL_NODISCARD sl_status sl_opt_bisections(const sl_opt_state *state, int32_t c, s
 /* Cuts greedily until the targets are met. */
 SL_NODISCARD sl_status sl_opt_cut(sl_opt_state *state);
 
+/* Seams as arcs between tips, junctions and the surface's border; and closed ones. */
+enum { SL_OPT_ARC_CLOSED = 1, SL_OPT_ARC_TIP_FIRST = 2, SL_OPT_ARC_TIP_LAST = 4 };
+typedef struct sl_opt_arcs {
+    int32_t count;
+    int32_t *first;    /* count + 1 */
+    int32_t *halfedge; /* of arc k in order: halfedge[first[k] .. first[k + 1] - 1], one halfedge an edge */
+    uint8_t *kind;     /* bits as above; a tip: the arc ends inside a chart */
+} sl_opt_arcs;
+
+SL_NODISCARD sl_status sl_opt_arcs_init(const sl_opt_state *state, sl_opt_arcs *out);
+void sl_opt_arcs_clear(sl_opt_arcs *arcs);
+
 /* Parts of seams that may be sewn, as trials not yet made; *list (owned), also after failure. */
 SL_NODISCARD sl_status sl_opt_windows(const sl_opt_state *state, sl_opt_trial **list, int64_t *count);
+
+/* The rigid motion (cos, sin, shift) of chart trial->old[1] that brings the window's banks together best; returns the
+ * root mean square of what is left between them. Within one chart the motion is none. */
+double sl_opt_align(const sl_opt_state *state, const sl_opt_trial *trial, double motion[4]);
 
 /* Sews greedily while the targets stay met. */
 SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);

@@ -10,7 +10,7 @@
 enum { BATCH = 4 };                   /* windows solved at a time, whatever the number of threads */
 static const double HOPE = 0.97;      /* geometric mean of the shares of both budgets below which a balance is tried */
 static const double LEAST_GAP = 1e-4; /* of the surface's unit: gaps below it are as good as none */
-static const int32_t TRIALS_A_ROUND = 24; /* without success, then sewing ends */
+static const int32_t TRIALS_A_ROUND = 40; /* without success, then sewing ends */
 
 /* A window that was refused. */
 typedef struct refusal {
@@ -61,48 +61,6 @@ static sl_status refuse(sewing *s, const sl_opt_trial *t)
     return status;
 }
 
-/* Sums over a window's points for the rigid motion that brings its right bank to its left one. */
-typedef struct alignment {
-    double mass, left[2], right[2], dot, cross, square;
-} alignment;
-
-static void add_point(const sl_opt_state *state, int32_t l, int32_t r, double mass, alignment *a)
-{
-    const double *p = state->uv + 2 * (int64_t)l, *q = state->uv + 2 * (int64_t)r;
-    a->mass += mass;
-    for (int k = 0; k < 2; k++) {
-        a->left[k] += mass * p[k];
-        a->right[k] += mass * q[k];
-    }
-    a->dot += mass * (p[0] * q[0] + p[1] * q[1]);
-    a->cross += mass * (q[0] * p[1] - q[1] * p[0]);
-    a->square += mass * (p[0] * p[0] + p[1] * p[1] + q[0] * q[0] + q[1] * q[1]);
-}
-
-/* Mean square distance of the banks: after the best rigid motion between two charts, as they lie within one. */
-static double gap_of(const sl_opt_state *state, const sl_opt_trial *t)
-{
-    const int32_t *twin = state->surface->patch->twin;
-    alignment a = {0};
-    for (int32_t k = 0; k < t->nedge; k++) {
-        const int32_t h = t->edge[k], g = twin[h];
-        const double mass = 0.5 * state->surface->length[h];
-        add_point(state, h, sl_corner_next(g), mass, &a);
-        add_point(state, sl_corner_next(h), g, mass, &a);
-    }
-    if (!(a.mass > 0.0)) {
-        return 0.0;
-    }
-    if (t->old[1] < 0) {
-        return fmax(a.square - 2.0 * a.dot, 0.0) / a.mass;
-    }
-    const double ll = a.left[0] * a.left[0] + a.left[1] * a.left[1];
-    const double rr = a.right[0] * a.right[0] + a.right[1] * a.right[1];
-    const double dot = a.dot - (a.left[0] * a.right[0] + a.left[1] * a.right[1]) / a.mass;
-    const double cross = a.cross - (a.right[0] * a.left[1] - a.right[1] * a.left[0]) / a.mass;
-    return fmax(a.square - (ll + rr) / a.mass - 2.0 * hypot(dot, cross), 0.0) / a.mass;
-}
-
 static double saving(const sl_opt_state *state, const sl_opt_trial *t)
 {
     double cost = 0.0;
@@ -133,7 +91,9 @@ static sl_status list_windows(sewing *s)
     }
     const double unit = s->state->surface->unit;
     for (int64_t k = 0; k < s->count; k++) {
-        s->list[k].rank = saving(s->state, &s->list[k]) / (sqrt(gap_of(s->state, &s->list[k])) / unit + LEAST_GAP);
+        double motion[4];
+        const double gap = sl_opt_align(s->state, &s->list[k], motion) / unit;
+        s->list[k].rank = saving(s->state, &s->list[k]) / (gap + LEAST_GAP);
     }
     if (s->count > 1) {
         qsort(s->list, (size_t)s->count, sizeof *s->list, by_rank);

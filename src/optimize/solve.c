@@ -94,11 +94,11 @@ cleanup:
     return status;
 }
 
-static sl_status solve_cold(attempt *a, double *uv, bool *embedded)
+static sl_status solve_cold(attempt *a, int attempts, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
     *embedded = false;
-    for (int k = 0; k < 2 && !*embedded; k++) {
+    for (int k = 0; k < attempts && !*embedded; k++) {
         bool solved = false;
         a->def.simple_border = k == 1;
         SL_TRY(outcome(sl_stretch_unfold(a->patch, &a->def, a->context, uv, NULL), &solved));
@@ -111,7 +111,8 @@ cleanup:
     return status;
 }
 
-sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, bool warm, double *uv, bool *embedded)
+sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
+                       bool *embedded)
 {
     sl_status status = SL_OK;
     attempt a = {.patch = patch, .def = stretch_def(state)};
@@ -123,11 +124,17 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, bool wa
     a.work = sl_alloc(patch->nv, sizeof *a.work);
     SL_TRY(a.start == NULL || a.work == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     SL_TRY(list_border(patch, &a.nb, &a.border));
-    if (warm) {
+    bool solved = false;
+    if (effort == SL_OPT_SEWN) {
+        SL_TRY(outcome(sl_stretch_minimise(a.patch, &a.def, a.context, uv, NULL), &solved));
+    }
+    if (solved) {
+        SL_TRY(certify(&a, uv, embedded));
+    } else if (effort == SL_OPT_WARM || effort == SL_OPT_WARM_ONLY) {
         SL_TRY(solve_warm(&a, uv, embedded));
     }
-    if (!*embedded) {
-        SL_TRY(solve_cold(&a, uv, embedded));
+    if (!solved && !*embedded && effort != SL_OPT_WARM_ONLY) {
+        SL_TRY(solve_cold(&a, effort == SL_OPT_SEWN ? 1 : 2, uv, embedded));
     }
 cleanup:
     sl_free(a.start);
@@ -143,6 +150,7 @@ typedef struct resolution {
     sl_opt_sums *sums;
     sl_status *status;
     bool *embedded;
+    sl_opt_effort effort;
 } resolution;
 
 static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
@@ -152,8 +160,8 @@ static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t c = begin; c < end; c++) {
         const sl_opt_chart *chart = &r->state->chart[c];
         r->uv[c] = sl_copy(chart->uv, 2 * (int64_t)chart->patch->nv, sizeof **r->uv);
-        r->status[c] =
-            r->uv[c] == NULL ? SL_OUT_OF_MEMORY : sl_opt_solve(r->state, chart->patch, true, r->uv[c], &r->embedded[c]);
+        r->status[c] = r->uv[c] == NULL ? SL_OUT_OF_MEMORY
+                                        : sl_opt_solve(r->state, chart->patch, r->effort, r->uv[c], &r->embedded[c]);
         if (r->status[c] == SL_OK && r->embedded[c]) {
             sl_opt_measure(r->state->surface, chart->patch, r->uv[c], &r->sums[c], NULL);
         }
@@ -173,11 +181,14 @@ static void take(sl_opt_state *state, int64_t c, double *uv, const sl_opt_sums *
     }
 }
 
-sl_status sl_opt_resolve(sl_opt_state *state)
+/* Every chart once more, side by side; *all = every one has an embedding. */
+static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool *all)
 {
     sl_status status = SL_OK;
     const int64_t n = state->nchart;
+    *all = true;
     resolution r = {.state = state,
+                    .effort = effort,
                     .uv = sl_calloc(n, sizeof *r.uv),
                     .sums = sl_calloc(n, sizeof *r.sums),
                     .status = sl_calloc(n, sizeof *r.status),
@@ -190,6 +201,7 @@ sl_status sl_opt_resolve(sl_opt_state *state)
         SL_TRY(r.status[c]);
     }
     for (int64_t c = 0; c < n; c++) {
+        *all = *all && r.embedded[c];
         if (r.embedded[c]) { /* otherwise the chart keeps the map it has */
             take(state, c, r.uv[c], &r.sums[c]);
             r.uv[c] = NULL;
@@ -204,6 +216,17 @@ cleanup:
     sl_free(r.status);
     sl_free(r.embedded);
     return status;
+}
+
+sl_status sl_opt_resolve(sl_opt_state *state)
+{
+    bool all;
+    return resolve(state, SL_OPT_WARM, &all);
+}
+
+sl_status sl_opt_unfold(sl_opt_state *state, bool *all)
+{
+    return resolve(state, SL_OPT_COLD, all);
 }
 
 /* ln of the share of the stretch budget used over that of the angle budget: falls as w rises. */

@@ -91,7 +91,33 @@ static void find_components(const sl_opt_state *state, const sl_opt_trial *trial
     m->first[m->ncomponents] = n;
 }
 
-static sl_status make_chart(const sl_opt_state *state, const making *m, int32_t k, sl_opt_chart *chart)
+/* The UVs at hand, the second chart brought to the first; vertices where banks meet get the mean of their corners. */
+static sl_status gather(const sl_opt_state *state, const sl_opt_trial *trial, const double motion[4],
+                        sl_opt_chart *chart)
+{
+    const sl_patch *p = chart->patch;
+    double *weight = sl_calloc(p->nv, sizeof *weight);
+    if (weight == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    for (int32_t c = 0; c < 3 * p->nt; c++) {
+        const double *uv = state->uv + 2 * (int64_t)p->corner[c];
+        double *out = chart->uv + 2 * (int64_t)p->tri[c];
+        const bool moves = trial->old[1] >= 0 && state->chart_of[p->facet[c / 3]] == trial->old[1];
+        out[0] += moves ? motion[0] * uv[0] - motion[1] * uv[1] + motion[2] : uv[0];
+        out[1] += moves ? motion[1] * uv[0] + motion[0] * uv[1] + motion[3] : uv[1];
+        weight[p->tri[c]] += 1.0;
+    }
+    for (int32_t v = 0; v < p->nv; v++) {
+        chart->uv[2 * (int64_t)v] /= weight[v];
+        chart->uv[2 * (int64_t)v + 1] /= weight[v];
+    }
+    sl_free(weight);
+    return SL_OK;
+}
+
+static sl_status make_chart(const sl_opt_state *state, const sl_opt_trial *trial, const making *m, int32_t k,
+                            sl_opt_chart *chart)
 {
     sl_status status = sl_opt_extract(state->surface, m->cut, m->list + m->first[k], m->first[k + 1] - m->first[k],
                                       m->local, &chart->patch);
@@ -99,9 +125,14 @@ static sl_status make_chart(const sl_opt_state *state, const making *m, int32_t 
         return status;
     }
     const sl_patch *p = chart->patch;
-    chart->uv = sl_alloc(2 * (int64_t)p->nv, sizeof *chart->uv);
+    chart->uv = sl_calloc(2 * (int64_t)p->nv, sizeof *chart->uv);
     if (chart->uv == NULL) {
         return SL_OUT_OF_MEMORY;
+    }
+    if (trial->sew) {
+        double motion[4];
+        (void)sl_opt_align(state, trial, motion);
+        return gather(state, trial, motion, chart);
     }
     for (int32_t c = 0; c < 3 * p->nt; c++) {
         memcpy(chart->uv + 2 * (int64_t)p->tri[c], state->uv + 2 * (int64_t)p->corner[c], 2 * sizeof *chart->uv);
@@ -125,7 +156,7 @@ sl_status sl_opt_trial_make(const sl_opt_state *state, sl_opt_trial *trial)
     trial->nto = m.ncomponents;
     trial->valid = true;
     for (int32_t k = 0; k < m.ncomponents; k++) {
-        SL_TRY(make_chart(state, &m, k, &trial->to[k]));
+        SL_TRY(make_chart(state, trial, &m, k, &trial->to[k]));
         trial->valid = trial->valid && sl_patch_is_disk(trial->to[k].patch);
     }
 cleanup:
@@ -165,7 +196,8 @@ sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        SL_TRY(sl_opt_solve(state, trial->to[k].patch, !trial->sew, trial->to[k].uv, &trial->valid));
+        SL_TRY(sl_opt_solve(state, trial->to[k].patch, trial->sew ? SL_OPT_SEWN : SL_OPT_WARM, trial->to[k].uv,
+                            &trial->valid));
     }
     trial->settled = trial->valid;
     if (trial->valid) {
