@@ -52,7 +52,7 @@ contains out.txt unwrap
 expect 0 "$seamlab" --version
 expect 2 "$seamlab"
 expect 2 "$seamlab" sing
-for verb in unwrap check measure pack compare overlap segment spectrum abf render theorem demo; do
+for verb in unwrap edit replay check measure pack compare overlap segment spectrum abf render theorem demo; do
     expect 0 "$seamlab" $verb --help
     contains out.txt 'Examples:'
     expect 2 "$seamlab" $verb --no-such-option
@@ -558,5 +558,40 @@ for delay in 0.1 0.3 0.5; do
     *) complain "exit $code after SIGTERM" ;;
     esac
 done
+# --- editing by a script
+printf '{"seamlab":"session","version":1}\n{"do":"cut-chart","facet":3}\n{"do":"pack"}\n' >edit.jsonl
+expect 0 "$seamlab" edit $mesh edit.jsonl -o edited.obj --log done.jsonl --quiet
+expect 0 "$seamlab" replay $mesh done.jsonl -o again.obj --quiet
+contains out.txt '"do":"cut-chart"'
+cmp -s edited.obj again.obj && cmp -s edited.atlas.json again.atlas.json || complain "a session replayed gives other bytes"
+expect 0 "$seamlab" edit $mesh edit.jsonl -o one.obj --threads 1 --json --quiet
+json out.txt
+cmp -s edited.obj one.obj || complain "edit with another number of threads gives other bytes"
+printf '{"seamlab":"session","version":1}\n' >nothing.jsonl
+expect 0 "$seamlab" edit $mesh nothing.jsonl -o plain.obj --quiet
+expect 0 "$seamlab" unwrap $mesh -o unwrapped.obj --quiet
+cmp -s plain.obj unwrapped.obj || complain "a session without actions gives other bytes than unwrap"
+printf '{"seamlab":"session","version":1}\n{"do":"pack"}\n\n{"do":"cut-chart"}\n' >broken.jsonl
+expect 3 "$seamlab" edit $mesh broken.jsonl -o broken.obj
+contains err.txt 'broken.jsonl:4'
+printf '{"seamlab":"session","version":1}\n{"do":"drop","constraint":1}\n' >bad.jsonl
+expect 3 "$seamlab" edit $mesh bad.jsonl -o broken.obj
+contains err.txt 'bad.jsonl:2'
+printf '{"seamlab":"session","version":1}\n{"do":"undo"}\n' >infeasible.jsonl
+expect 4 "$seamlab" edit $mesh infeasible.jsonl -o broken.obj
+printf '{"seamlab":"session","version":1}\n{"do":"cut-chart","facet":3}\n{"do":"scale","facet":3,"factor":3}\n' >red.jsonl
+expect 5 "$seamlab" edit $mesh red.jsonl -o broken.obj
+no_file broken.obj broken.atlas.json
+expect 0 "$seamlab" edit $mesh red.jsonl -o red.obj --allow-overlap --quiet
+expect 0 "$seamlab" edit $mesh red.jsonl -o packed.obj --pack --quiet
+expect 2 "$seamlab" edit $mesh edit.jsonl
+expect 2 "$seamlab" edit $mesh edit.jsonl -o edited.off
+expect 3 "$seamlab" edit $mesh no-such.jsonl -o broken.obj
+head -c $(($(wc -c <done.jsonl) - 4)) done.jsonl >cut.jsonl # as after kill -9
+expect 0 "$seamlab" replay $mesh cut.jsonl
+contains err.txt 'has no end'
+expect 0 "$seamlab" replay $mesh done.jsonl --to 1 --step-pictures steps --quiet
+for f in steps/step-00000.png steps/step-00001.png; do [ -s $f ] || complain "$f is missing"; done
+no_file steps/step-00002.png
 no_temporaries
 exit $bad
