@@ -7,11 +7,12 @@
 
 #include <math.h>
 
-enum { CHUNK = 256, MOST_RAYS = 256, FEWEST_RAYS = 2, FACETS_A_STEP = 5 };
+enum { CHUNK = 256, MOST_RAYS = 256, FEWEST_RAYS = 1, FACETS_A_STEP = 5 };
 
 static const double turn = 6.283185307179586;
 static const double golden = 0.6180339887498949;
 static const double lift = 0x1p-22; /* of the ray's start, in units of the normalised mesh */
+static const double plenty = 0.75;  /* seen from one side: then the other is not looked from */
 static const double alike = 0.5;    /* cosine between facets that are averaged */
 
 typedef struct ambient {
@@ -30,7 +31,7 @@ typedef struct ambient {
 
 sl_ambient_def sl_ambient_default(void)
 {
-    return (sl_ambient_def){.rays = 64, .rays_total = 1 << 21};
+    return (sl_ambient_def){.rays = 32, .rays_total = 1 << 20};
 }
 
 /* Evenly over the hemisphere, as dense as the cosine to its pole: a sunflower on the disk below, lifted. */
@@ -190,7 +191,7 @@ static void look(void *user, int64_t begin, int64_t end, int32_t chunk)
             continue;
         }
         a->visibility[f] = look_around(a, f, skip, centre, along, 1.0);
-        if (a->two[f] && a->visibility[f] < 1.0) {
+        if (a->two[f] && a->visibility[f] < plenty) {
             a->visibility[f] = fmax(a->visibility[f], look_around(a, f, skip, centre, along, -1.0));
         }
     }

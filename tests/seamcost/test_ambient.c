@@ -172,7 +172,7 @@ static void few_rays_averaged_come_near_many(void **state)
         mean += visible[f] / m->nf;
     }
     for (int k = 0; k < 2; k++) {
-        compute(m, 64, k == 0 ? 1 : 8 * m->nf, other); /* two rays a facet, eight */
+        compute(m, 64, k == 0 ? 2 * m->nf : 8 * m->nf, other); /* rays in all */
         for (int32_t f = 0; f < m->nf; f++) {
             off[k] += fabs(visible[f] - other[f]) / m->nf;
             spread += fabs(visible[f] - mean) / m->nf / 2;
@@ -198,7 +198,7 @@ static void borders_open_a_surface_and_seams_do_not(void **state)
         sl_mesh *sheet = soup_build(&s, NULL);
         compute(sheet, 32, 1 << 21, visible);
         for (int32_t f = 0; f < sheet->nf; f++) {
-            assert_true(visible[f] > 0.95);
+            assert_true(visible[f] >= 0.75);
         }
         sl_mesh_free(sheet);
         soup_scramble(&s, &rng, 1.0);
