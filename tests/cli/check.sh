@@ -339,6 +339,31 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
 expect 3 "$seamlab" measure bare.obj
 contains err.txt 'no UVs'
 
+# --- pack: the same bytes for any number of threads, what is shared stays shared, tiles, refusals
+for t in 1 5; do
+    expect 0 "$seamlab" pack uv1.obj -o packed$t.obj --effort 6 --threads $t --resolution 256
+done
+contains err.txt 'proven 4 apart'
+cmp -s packed1.obj packed5.obj || complain "pack depends on the number of threads"
+json packed1.atlas.json
+expect 0 "$seamlab" overlap packed1.obj --exact
+expect 0 "$seamlab" pack shared1.obj -o packed.obj --effort 0 --json
+contains out.txt '"certified":true'
+copies=$(sed 's/.*"copies":\([0-9]*\).*/\1/' out.txt)
+[ "$copies" -gt 0 ] || complain "pack parts charts that share a place"
+expect 0 "$seamlab" measure packed.obj --json
+contains out.txt "\"copies\":$copies,"
+expect 0 "$seamlab" pack packed.obj -o tiles.obj --effort 0 --density 20 --resolution 64 --margin 1 --pages 90 --json
+contains out.txt '"texelsAUnit":20.0'
+expect 4 "$seamlab" pack packed.obj -o none.obj --density 1e9
+contains err.txt 'at that density'
+expect 3 "$seamlab" pack bare.obj -o none.obj
+contains err.txt 'no UVs to pack'
+expect 2 "$seamlab" pack uv1.obj
+expect 2 "$seamlab" pack uv1.obj -o none.off
+expect 2 "$seamlab" pack uv1.obj -o none.obj --rotations left
+no_file none.obj none.off none.atlas.json
+
 # --- seams of one's own: segment writes what unwrap reads
 expect 0 "$seamlab" segment $mesh --labels labels.csv --seams seams.csv -o charts.ply
 contains labels.csv '^facet,chart$'
