@@ -22,7 +22,7 @@ static double wedge(const double *a, const double *b, const double *c)
 {
     const double x = hypot(b[0] - a[0], b[1] - a[1]), y = hypot(c[0] - a[0], c[1] - a[1]);
     const double z = hypot(c[0] - b[0], c[1] - b[1]);
-    return acos((x * x + y * y - z * z) / (2.0 * x * y)) * 180.0 / TEST_PI;
+    return acos(fmax(-1.0, fmin(1.0, (x * x + y * y - z * z) / (2.0 * x * y)))) * 180.0 / TEST_PI;
 }
 
 static void an_angle_at_the_border_is_what_was_asked_for(void **state)
