@@ -162,14 +162,14 @@ static void scale_to_area(const sl_patch *patch, double *uv)
 static sl_status analyze(sl_reconstruct *r)
 {
     sl_status status = SL_OK;
-    double *xyz = sl_alloc(6 * (int64_t)r->layout.nfree, sizeof *xyz);
-    if (xyz == NULL) {
+    int32_t *perm = sl_alloc(2 * (int64_t)r->layout.nfree, sizeof *perm);
+    if (perm == NULL) {
         return SL_OUT_OF_MEMORY;
     }
-    sl_layout_points(&r->layout, xyz);
     SL_TRY(sl_layout_pattern(&r->layout, &r->A));
+    SL_TRY(sl_layout_order(&r->layout, r->A, perm));
     sl_cholesky_def def = sl_cholesky_default();
-    def.xyz = xyz;
+    def.perm = perm;
     SL_TRY(sl_cholesky_analyze(r->A, &def, &r->factor));
     SL_TRY(sl_cholesky_reserve(r->factor)); /* sl_reconstruct_solve allocates nothing */
     r->rhs = sl_alloc(2 * (int64_t)r->layout.nfree, sizeof *r->rhs);
@@ -177,7 +177,7 @@ static sl_status analyze(sl_reconstruct *r)
     r->uv = sl_alloc(2 * (int64_t)r->layout.patch->nv, sizeof *r->uv);
     status = r->rhs == NULL || r->work == NULL || r->uv == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 cleanup:
-    sl_free(xyz);
+    sl_free(perm);
     return status;
 }
 

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "geom/vec3.h"
 #include "param/sectors.h"
+#include "sparse/order.h"
 
 /* Border vertex farthest from a point, the lowest of equals; -1 without a border. */
 static int32_t farthest_on_border(const sl_patch *patch, const double point[3], int32_t except)
@@ -105,14 +106,49 @@ void sl_layout_clear(sl_layout *layout)
     *layout = (sl_layout){0};
 }
 
-void sl_layout_points(const sl_layout *layout, double *xyz)
+/* Lower triangle of R alone: the graph of the free vertices. */
+static sl_status vertex_pattern(const sl_csc *A, sl_csc **out)
 {
-    for (int32_t v = 0; v < layout->patch->nv; v++) {
-        const int64_t f = layout->unknown[v];
-        for (int k = 0; k < 2 && f >= 0; k++) {
-            memcpy(&xyz[3 * (2 * f + k)], &layout->patch->xyz[3 * (int64_t)v], 3 * sizeof *xyz);
+    sl_status status = SL_OK;
+    sl_csc *G = NULL;
+    int64_t nnz = 0;
+    SL_TRY(sl_csc_create(A->nrows / 2, A->ncols / 2, A->colptr[A->ncols], &G));
+    for (int32_t j = 0; j < G->ncols; j++) {
+        G->colptr[j] = nnz;
+        for (int64_t p = A->colptr[2 * j]; p < A->colptr[2 * j + 1]; p++) {
+            if (A->row[p] % 2 == 0) {
+                G->row[nnz++] = A->row[p] / 2;
+            }
         }
     }
+    G->colptr[G->ncols] = nnz;
+    *out = G;
+cleanup:
+    return status;
+}
+
+sl_status sl_layout_order(const sl_layout *layout, const sl_csc *A, int32_t *perm)
+{
+    sl_status status = SL_OK;
+    sl_csc *G = NULL;
+    double *xyz = sl_alloc(3 * (int64_t)layout->nfree, sizeof *xyz);
+    SL_TRY(xyz != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    SL_TRY(vertex_pattern(A, &G));
+    for (int32_t v = 0; v < layout->patch->nv; v++) {
+        if (layout->unknown[v] >= 0) {
+            memcpy(&xyz[3 * (int64_t)layout->unknown[v]], &layout->patch->xyz[3 * (int64_t)v], 3 * sizeof *xyz);
+        }
+    }
+    SL_TRY(sl_order(G, SL_ORDER_AUTO, xyz, perm));
+    for (int32_t k = layout->nfree; k-- > 0;) { /* from the end: what is read has not been written yet */
+        const int32_t f = perm[k];
+        perm[2 * k] = 2 * f;
+        perm[2 * k + 1] = 2 * f + 1;
+    }
+cleanup:
+    sl_csc_free(G);
+    sl_free(xyz);
+    return status;
 }
 
 /* One entry of H: the neighbour, the cotangent Laplacian's weight, +1 or -1 along the border. */

@@ -29,7 +29,8 @@ SL_NODISCARD sl_status sl_layout_pattern(sl_layout *layout, sl_csc **out);
 /* Other values, by the present layout->cot. A: of sl_layout_pattern. Allocates nothing. */
 void sl_layout_fill(sl_layout *layout, sl_csc *A);
 
-/* The 3D position of each unknown's vertex, twice per free vertex: xyz 2 nfree x 3. */
-void sl_layout_points(const sl_layout *layout, double *xyz);
+/* An ordering of the unknowns, perm (2 nfree): that of the free vertices by their places in space, x and y of each one
+ * after the other, which takes half the time of ordering both. A: of sl_layout_pattern. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_layout_order(const sl_layout *layout, const sl_csc *A, int32_t *perm);
 
 #endif
