@@ -133,8 +133,9 @@ static sl_status find_candidates(cut_search *s)
         SL_TRY(SL_OUT_OF_MEMORY);
     }
     SL_TRY(sl_cut_candidates(s->piece->mesh, s->graph, s->spectrum, s->candidates));
+    const bool all = !s->def->filter && s->def->rule != SL_RULE_LOOKAHEAD;
     for (int32_t k = 0; k < s->spectrum->count - 1; k++) {
-        if (s->candidates[k].passes) {
+        if (s->candidates[k].passes || all) {
             s->passing[s->npassing++] = k;
         }
     }

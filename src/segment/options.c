@@ -16,6 +16,7 @@ sl_segment_def sl_segment_default(void)
                           .rule = SL_RULE_LOOKAHEAD,
                           .vectors = 30,
                           .pairing = SL_PAIR_AUTO,
+                          .filter = true,
                           .smooth = 2,
                           .join = true,
                           .sew = true,

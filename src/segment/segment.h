@@ -61,6 +61,8 @@ typedef struct sl_segment_def {
     sl_cut_rule rule;
     int32_t vectors;      /* eigenvectors computed a cut; default 30 */
     sl_pairing pairing;   /* triangles back into quads in the facet graph; default auto */
+    bool filter;          /* only vectors with connected positive and negative facets cut (paper, Sec. 3.3); default true;
+                             off, to compare, with the rules by length: looking ahead needs two halves */
     int32_t smooth;       /* dual rings of the band minimum cut, 0 = off; default 2 */
     bool join;            /* genus-0 charts with several borders: loops joined by shortest paths; default true */
     bool sew;             /* merge neighbours while they stay valid; default true */
