@@ -16,6 +16,10 @@ static const double TARGET_SHARE = 0.96;
 /* A conformal map of more stretch than this is given up for one found on coarse meshes, which takes fewer steps. */
 static const double NEAR_L2 = 3.0;
 
+/* On a coarse mesh of the chart: above this a conformal map of the chart itself is not even tried where it would be
+ * given up. */
+static const double FORESEEN_L2 = 10.0;
+
 /* Energy weights that trade stretch for angles, tried in turn where a chart is within the bound on the one and beyond
  * that on the others; two or three steps each. */
 static const double ANGLE_WEIGHTS[] = {-1.0, -2.0, -4.0};
@@ -250,6 +254,7 @@ static sl_status refine(chain *c, bool from_map, sl_flatten_method method, bool 
     }
     sl_status status = minimise(c, &def, from_map, method, &trial, found);
     def.target_l2 = 0.0;
+    def.most_l2 = isfinite(c->max_stretch) ? c->max_stretch : 0.0;
     for (size_t k = 0; k < SL_COUNTOF(ANGLE_WEIGHTS) && status == SL_OK && trial.verdict == SL_CHART_SHEARED; k++) {
         bool again;
         def.w = fmin(c->def->stretch.w, ANGLE_WEIGHTS[k]);
@@ -279,12 +284,30 @@ static sl_status try_tutte(chain *c)
     return consider(c, SL_FLATTEN_TUTTE, false, true, NULL);
 }
 
+/* Would a conformal map be made only to be given up? */
+static sl_status foresee(chain *c, bool *hopeless)
+{
+    const sl_flatten_def *def = c->def;
+    *hopeless = false;
+    if (!def->tutte || !def->minimise_stretch || !isfinite(c->max_stretch) || is_constrained(def) ||
+        c->abf.sectors != NULL || c->max_stretch > NEAR_L2) {
+        return SL_OK;
+    }
+    const sl_status status = sl_flatten_foresee(c->patch, &c->abf, c->context, &c->result->foreseen_l2);
+    *hopeless = c->result->foreseen_l2 > FORESEEN_L2;
+    return status;
+}
+
 /* The chain for a disk that is not flat. */
 static sl_status flatten_disk(chain *c)
 {
     sl_status status = SL_OK;
-    sl_flatten_result trial;
-    SL_TRY(try_conformal(c, &trial));
+    bool hopeless, found = false;
+    sl_flatten_result trial = {.verdict = SL_CHART_NOT_CONVERGED};
+    SL_TRY(foresee(c, &hopeless));
+    if (!hopeless) {
+        SL_TRY(try_conformal(c, &trial));
+    }
     if (trial.verdict == SL_CHART_VALID && c->def->polish) {
         SL_TRY(polish(c, trial.method));
     }
@@ -292,7 +315,6 @@ static sl_status flatten_disk(chain *c)
         goto cleanup;
     }
     const sl_flatten_method conformal = trial.method;
-    bool found = false;
     if (c->def->minimise_stretch && is_distorted(trial.verdict) && (trial.distortion.l2 <= NEAR_L2 || !c->def->tutte)) {
         SL_TRY(refine(c, true, conformal, &found));
         goto cleanup;

@@ -61,6 +61,8 @@ typedef struct sl_flatten_result {
     bool constrained;    /* the map keeps the constraints asked for (true when none were) */
     double pin_distance; /* of the pin furthest from its place [uv units]; 0 = all are there */
     sl_abf_info abf;
+    double foreseen_l2; /* of ABF++'s map of a coarse mesh of a large chart, 0 or 1 = not known: where it is above 10,
+                         * ABF++ and LSCM were not tried on the chart itself, and abf says nothing */
     sl_stretch_info stretch;
 } sl_flatten_result;
 
@@ -77,13 +79,15 @@ const char *sl_flatten_verdict_name(sl_flatten_verdict verdict);
  * (result->constrained). Pins are served last, two by a similarity, more by the minimiser, and the scale is then
  * theirs.
  *
- * Tried in turn until one is valid: projection (vertices within 1e-12 of the extent from one plane); ABF++; LSCM where
- * that did not converge or flipped; flip-free minimisation with a simple border, from that map if it is an embedding of
- * L2 at most 3, else from coarse meshes (sl_stretch_unfold; reported as Tutte's, whose embedding it begins with). The
- * minimiser stops 4 % of the way from max_stretch to 1, or when it is hopeless (stretch.hopeless_*; where those are 0,
- * values of the chain's own). A chart within the first bound but not the second is minimised on with weights below 0.
- * With polish a conformal map that is valid is minimised to the end and replaced by what comes out if that is valid and
- * stretches less. With minimise_stretch and tutte both off: the plain ABF++ verdict.
+ * Charts of 8000 triangles and more whose coarse mesh shows that a conformal map would stretch too much to be refined
+ * (result->foreseen_l2) go straight to the minimisation. Tried in turn until one is valid: projection (vertices within
+ * 1e-12 of the extent from one plane); ABF++; LSCM where that did not converge or flipped; flip-free minimisation with
+ * a simple border, from that map if it is an embedding of L2 at most 3, else from coarse meshes (sl_stretch_unfold;
+ * reported as Tutte's, whose embedding it begins with). The minimiser stops 4 % of the way from max_stretch to 1, or
+ * when it is hopeless (stretch.hopeless_*; where those are 0, values of the chain's own). A chart within the first
+ * bound but not the second is minimised on with weights below 0. With polish a conformal map that is valid is minimised
+ * to the end and replaced by what comes out if that is valid and stretches less. With minimise_stretch and tutte both
+ * off: the plain ABF++ verdict.
  *
  * Valid: a disk, the map converged, every triangle positive by exact predicate, border simple, L2 <= max_stretch,
  * mean s1/s2 <= max_angle.

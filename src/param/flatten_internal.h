@@ -5,6 +5,7 @@
 
 #include "mesh/patch.h"
 #include "overlap/certificate.h"
+#include "param/abf.h"
 #include "param/constraints_internal.h"
 #include "param/stretch.h"
 
@@ -26,6 +27,11 @@ void sl_flatten_scale(const sl_patch *patch, double *uv);
  * map where that one is embedded, and stays so when rounded to 2^-34 of its extent, and uv was not. */
 SL_NODISCARD sl_status sl_flatten_certify(const sl_patch *patch, int32_t nb, const int32_t *border, double *uv,
                                           sl_certificate *out);
+
+/* *l2 = the stretch of ABF++'s map of a coarse mesh of the chart; 1 where there is nothing to say: small charts, those
+ * that cannot be made coarser, no convergence, flips. SL_OUT_OF_MEMORY, SL_CANCELLED. */
+SL_NODISCARD sl_status sl_flatten_foresee(const sl_patch *patch, const sl_abf_def *def, const sl_context *context,
+                                          double *l2);
 
 /* The lines of a list of constraints for the stretch minimiser, and the two border edges at a prescribed angle as lines
  * of their own where they are on none. Zero-initialised = empty. */

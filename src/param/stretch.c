@@ -317,6 +317,9 @@ static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums
 static bool is_hopeless(const sl_stretch *s, double gain)
 {
     const sl_stretch_def *def = &s->def;
+    if (def->most_l2 > 0.0 && s->info.l2 > def->most_l2) {
+        return true;
+    }
     if (def->hopeless_l2 > 0.0 && s->info.iterations >= def->hopeless_after && s->info.l2 > def->hopeless_l2) {
         return true;
     }

@@ -34,6 +34,8 @@ typedef struct sl_stretch_def {
     int32_t hopeless_after; /* default 15 */
     double hopeless_gain; /* give up once target_l2 is out of reach even if L2 falls by this many times the share of the
                            * energy that the last plain step gained; 0 = never; default 0 */
+    double most_l2; /* give up once a step leaves L2 above this, which weights below 0 do that buy angles for it; 0 =
+                     * never; default 0 */
     bool simple_border;   /* refuse steps that make the border cross itself; needs a simple start; default false */
     const uint8_t *fixed; /* nv: 1 = the vertex stays where it starts; borrowed; default NULL = none. With fixed
                            * vertices or lines the map is not scaled first */

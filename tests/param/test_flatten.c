@@ -388,6 +388,34 @@ static void names_are_known_for_every_value(void **state)
     assert_string_equal(sl_flatten_verdict_name((sl_flatten_verdict)99), "unknown");
 }
 
+/* On large charts a coarse mesh says how a conformal map would stretch: a limb goes straight to the minimisation, a
+ * tame chart is ABF++'s as ever, and the paper's chain foresees nothing. */
+static void a_coarse_mesh_tells_what_angles_would_do(void **state)
+{
+    (void)state;
+    sl_patch *limb = chart_tube(200, 22, 0.005, 0xf0e), *tame = chart_hexagon(37, 0.2, chart_bumps, 1.6, 0xf0e);
+    assert_true(limb->nt > 8000 && tame->nt > 8000);
+    for (int32_t v = 0; v < limb->nv; v++) { /* about twice as long as wide */
+        limb->xyz[3 * v + 2] *= 0.35;
+    }
+    sl_flatten_def def = sl_flatten_default(), alone = plain();
+    def.max_stretch = alone.max_stretch = 2.5;
+    outcome o = flatten(limb, &def), abf = flatten(limb, &alone);
+    assert_true(o.r.foreseen_l2 > 10.0 && o.r.abf.iterations == 0);
+    assert_int_equal(o.r.method, SL_FLATTEN_TUTTE);
+    assert_int_equal(o.r.verdict, SL_CHART_VALID);
+    assert_true(abf.r.foreseen_l2 == 0.0 && abf.r.abf.converged);
+    assert_true(test_near_rel(o.r.foreseen_l2, abf.r.distortion.l2, 0.2));
+    free(o.uv);
+    free(abf.uv);
+    o = flatten(tame, &def);
+    assert_int_equal(o.r.method, SL_FLATTEN_ABF);
+    assert_true(o.r.foreseen_l2 > 1.0 && test_near_rel(o.r.foreseen_l2, o.r.distortion.l2, 0.1));
+    free(o.uv);
+    sl_patch_free(limb);
+    sl_patch_free(tame);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -406,6 +434,7 @@ int main(void)
         cmocka_unit_test(random_charts_always_end_in_an_embedding),
         cmocka_unit_test(flattening_can_be_cancelled),
         cmocka_unit_test(names_are_known_for_every_value),
+        cmocka_unit_test(a_coarse_mesh_tells_what_angles_would_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
