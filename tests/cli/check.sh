@@ -353,8 +353,8 @@ copies=$(sed 's/.*"copies":\([0-9]*\).*/\1/' out.txt)
 [ "$copies" -gt 0 ] || complain "pack parts charts that share a place"
 expect 0 "$seamlab" measure packed.obj --json
 contains out.txt "\"copies\":$copies,"
-expect 0 "$seamlab" pack packed.obj -o tiles.obj --effort 0 --density 20 --resolution 64 --margin 1 --pages 90 --json
-contains out.txt '"texelsAUnit":20.0'
+expect 0 "$seamlab" pack packed.obj -o tiles.obj --effort 0 --density 3 --resolution 64 --margin 1 --pages 90 --json
+contains out.txt '"texelsAUnit":3.0'
 expect 4 "$seamlab" pack packed.obj -o none.obj --density 1e9
 contains err.txt 'at that density'
 expect 3 "$seamlab" pack bare.obj -o none.obj
