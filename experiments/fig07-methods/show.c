@@ -1,6 +1,8 @@
 #include "methods.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 static sl_status open_csv(exp_run *run, const char *name, const char *header, sl_writer **writer)
 {
@@ -42,7 +44,8 @@ static sl_status write_numbers(exp_run *run, const model *models, int32_t count)
 {
     sl_writer *w = NULL;
     const sl_status status =
-        open_csv(run, "methods.csv", "mesh,facets,setting,method,charts,seam,l2,turning,splits,invalid\n", &w);
+        open_csv(run, "methods.csv",
+                 "mesh,facets,setting,method,charts,seam,l2,angle,area,turning,axis,splits,invalid,failed\n", &w);
     if (status != SL_OK) {
         return status;
     }
@@ -50,9 +53,10 @@ static sl_status write_numbers(exp_run *run, const model *models, int32_t count)
         for (int setting = 0; setting < SETTINGS; setting++) {
             for (int method = 0; method < METHODS; method++) {
                 const outcome *o = &models[k].outcome[setting][method];
-                sl_writer_format(w, "%s,%d,%s,%s,%.0f,%.6f,%.6f,%.4f,%d,%d\n", models[k].source.name, models[k].facets,
-                                 setting_name[setting], method_name[method], o->metric[CHARTS], o->metric[SEAM],
-                                 o->metric[STRETCH], o->metric[JAGGED], o->splits, o->invalid);
+                sl_writer_format(w, "%s,%d,%s,%s,%.0f,%.6f,%.6f,%.6f,%.6f,%.4f,%.4f,%d,%d,%d\n", models[k].source.name,
+                                 models[k].facets, setting_name[setting], method_name[method], o->metric[CHARTS],
+                                 o->metric[SEAM], o->metric[STRETCH], o->metric[ANGLE], o->metric[AREA],
+                                 o->metric[JAGGED], o->axis, o->splits, o->invalid, o->failed);
             }
         }
     }
@@ -95,15 +99,14 @@ sl_status show_summary(exp_page *page, const model *models, int32_t count)
 {
     sl_status status = SL_OK;
     exp_page_table_begin(page,
-                         "method|charts|seam|L2|turning|CPU time|fewer charts|shorter seam|less stretch|straighter");
+                         "method|charts|seam|L2|angle|area|turning|CPU time|fewer charts|shorter seam|less stretch|"
+                         "straighter|axis kept");
     for (int k = 0; k < SETTINGS * METHODS; k++) {
         const int setting = k / METHODS, method = k % METHODS;
         comparison c[METRICS];
+        int32_t kept, axes;
         for (int metric = 0; metric < METRICS; metric++) {
             SL_TRY(compare(models, count, setting, method, metric, &c[metric]));
-        }
-        if (method == SPECTRAL) {
-            continue;
         }
         exp_page_row_begin(page, false);
         exp_page_cell(page, "%s, %s", method_title[method], setting == AS_CUT ? "as cut" : "default");
@@ -111,8 +114,12 @@ sl_status show_summary(exp_page *page, const model *models, int32_t count)
             exp_page_cell(page, "&times; %.2f", exp2(c[metric].median));
         }
         for (int metric = 0; metric < SECONDS; metric++) {
-            exp_page_cell(page, "%d / %d", c[metric].better, c[metric].worse);
+            if (metric != ANGLE && metric != AREA) {
+                exp_page_cell(page, "%d / %d", c[metric].better, c[metric].worse);
+            }
         }
+        count_axes(models, count, setting, method, &kept, &axes);
+        exp_page_cell(page, "%d of %d", kept, axes);
         exp_page_row_end(page);
     }
 cleanup:
@@ -120,24 +127,43 @@ cleanup:
     return status;
 }
 
-void show_models(exp_page *page, const model *models, int32_t count, int setting)
+/* One number of every model by every method: ten columns. */
+static void show_metric(exp_page *page, const model *models, int32_t count, int setting, int metric)
 {
-    exp_page_html(page, "<h3>Every model, %s</h3>\n", setting == AS_CUT ? "as cut" : "default settings");
-    exp_page_table_begin(page,
-                         "mesh|facets|charts: spectral|PCA|VSA 2|VSA|seam: spectral|PCA|VSA 2|VSA|L2: spectral|PCA|"
-                         "VSA 2|VSA|turning: spectral|PCA|VSA 2|VSA");
+    static const char *const format[METRICS] = {"%.0f", "%.2f", "%.3f", "%.3f", "%.3f", "%.1f", "%.2f"};
+    char header[256] = "mesh|facets";
+    for (int method = 0; method < METHODS; method++) {
+        const size_t used = strlen(header);
+        snprintf(header + used, sizeof header - used, "|%s", method_short[method]);
+    }
+    exp_page_html(page, "<details><summary>%s of every model, %s</summary>\n", metric_title[metric],
+                  setting == AS_CUT ? "as cut" : "default settings");
+    exp_page_table_begin(page, header);
     for (int32_t k = 0; k < count; k++) {
         const outcome *o = models[k].outcome[setting];
-        exp_page_row_begin(page, o[SPECTRAL].invalid + o[PCA].invalid + o[VSA_TWO].invalid + o[VSA_ERROR].invalid > 0);
+        bool bad = false;
+        for (int method = 0; method < METHODS; method++) {
+            bad |= o[method].failed || o[method].invalid > 0;
+        }
+        exp_page_row_begin(page, bad);
         exp_page_cell(page, "%s", models[k].source.name);
         exp_page_cell(page, "%d", models[k].facets);
-        for (int metric = 0; metric < SECONDS; metric++) {
-            static const char *const format[SECONDS] = {"%.0f", "%.2f", "%.3f", "%.1f&deg;"};
-            for (int method = 0; method < METHODS; method++) {
+        for (int method = 0; method < METHODS; method++) {
+            if (o[method].failed) {
+                exp_page_cell(page, "failed");
+            } else {
                 exp_page_cell(page, format[metric], o[method].metric[metric]);
             }
         }
         exp_page_row_end(page);
     }
     exp_page_table_end(page);
+    exp_page_html(page, "</details>\n");
+}
+
+void show_models(exp_page *page, const model *models, int32_t count, int setting)
+{
+    for (int metric = 0; metric < SECONDS; metric++) { /* times differ from run to run: they stand in timings.csv */
+        show_metric(page, models, count, setting, metric);
+    }
 }

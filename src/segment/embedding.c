@@ -7,7 +7,8 @@
 
 #include <math.h>
 
-#define CONSTANT_RTOL 1e-9 /* an eigenvalue of this share of the largest, or less, belongs to a constant vector */
+#define SPECTRUM_TOLERANCE 1e-6 /* clusters need no more */
+#define CONSTANT_RTOL 1e-9      /* an eigenvalue of this share of the largest, or less, belongs to a constant vector */
 
 /* x_k(i) = v_k(i) / sqrt(lambda_k), the constant vector left out. Returns the number of dimensions. */
 static int32_t place_nodes(const sl_spectrum *s, double *x)
@@ -54,6 +55,7 @@ sl_status sl_embedding_labels(const sl_piece *piece, const sl_facet_graph *graph
     double *x = NULL, *area = sl_calloc(n, sizeof *area), energy = 0.0, total = 0.0;
     SL_TRY(area != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     how.count = def->vectors < 2 ? 2 : def->vectors;
+    how.tolerance = SPECTRUM_TOLERANCE;
     how.memory_limit = def->memory_limit;
     SL_TRY(sl_spectrum_solve(graph, &how, context, &spectrum));
     x = sl_alloc(n * spectrum->count, sizeof *x);

@@ -6,14 +6,15 @@
 
 #include <math.h>
 
-#define PASSES 4           /* sweeps after the march, at most; two settle almost every surface */
-#define SETTLED_RTOL 1e-12 /* a distance that falls by less has settled */
+#define PASSES 4          /* sweeps after the march, at most; two settle almost every surface */
+#define SETTLED_RTOL 1e-3 /* a pass that lowers no distance by more is the last */
 
 void sl_geodesics_clear(sl_geodesics *g)
 {
     sl_free(g->tri);
     sl_free(g->first);
     sl_free(g->incident);
+    sl_free(g->length);
     sl_free(g->heap);
     sl_free(g->place);
     sl_free(g->order);
@@ -35,6 +36,19 @@ static void list_incident(sl_geodesics *g)
     }
 }
 
+/* length[3 t + k] = of the edge across from corner k of triangle t. */
+static void measure_edges(sl_geodesics *g)
+{
+    for (int32_t t = 0; t < g->nt; t++) {
+        for (int32_t k = 0; k < 3; k++) {
+            const int32_t a = g->tri[3 * t + (k + 1) % 3], b = g->tri[3 * t + (k + 2) % 3];
+            double d[3];
+            sl_vec3_sub(g->mesh->xyz + 3 * (int64_t)a, g->mesh->xyz + 3 * (int64_t)b, d);
+            g->length[3 * t + k] = sl_vec3_norm(d);
+        }
+    }
+}
+
 sl_status sl_geodesics_create(const sl_mesh *mesh, const sl_triangulation *triangulation, sl_geodesics *out)
 {
     const int64_t nv = mesh->nv, nt = triangulation->nt;
@@ -42,12 +56,13 @@ sl_status sl_geodesics_create(const sl_mesh *mesh, const sl_triangulation *trian
     g.tri = sl_alloc(3 * nt, sizeof *g.tri);
     g.first = sl_calloc(nv + 1, sizeof *g.first);
     g.incident = sl_alloc(3 * nt, sizeof *g.incident);
+    g.length = sl_alloc(3 * nt, sizeof *g.length);
     g.heap = sl_alloc(nv, sizeof *g.heap);
     g.place = sl_alloc(nv, sizeof *g.place);
     g.order = sl_alloc(nv, sizeof *g.order);
     *out = (sl_geodesics){0};
-    if (g.tri == NULL || g.first == NULL || g.incident == NULL || g.heap == NULL || g.place == NULL ||
-        g.order == NULL) {
+    if (g.tri == NULL || g.first == NULL || g.incident == NULL || g.length == NULL || g.heap == NULL ||
+        g.place == NULL || g.order == NULL) {
         sl_geodesics_clear(&g);
         return SL_OUT_OF_MEMORY;
     }
@@ -55,6 +70,7 @@ sl_status sl_geodesics_create(const sl_mesh *mesh, const sl_triangulation *trian
         g.tri[c] = mesh->origin[triangulation->corner[c]];
     }
     list_incident(&g);
+    measure_edges(&g);
     *out = g;
     return SL_OK;
 }
@@ -92,37 +108,40 @@ static int32_t pop(sl_geodesics *g, const double *distance)
     return top;
 }
 
-static double edge_length(const sl_geodesics *g, int32_t v, int32_t w)
+static int32_t next_corner(int32_t c)
 {
-    double d[3];
-    sl_vec3_sub(g->mesh->xyz + 3 * (int64_t)v, g->mesh->xyz + 3 * (int64_t)w, d);
-    return sl_vec3_norm(d);
+    return c % 3 == 2 ? c - 2 : c + 1;
 }
 
-/* What the triangle (a, b, x) makes of the distance of x. Where the front enters through the edge ab, the source is
- * unfolded into the plane of the triangle: a at the origin, b at (e, 0), x above, the source below the edge. */
-static double through_triangle(const sl_geodesics *g, const double *distance, int32_t a, int32_t b, int32_t x)
+/* What its triangle makes of the distance of the vertex x at corner c: at most `best`. Where the front enters through
+ * the edge ab across, the source is unfolded into the plane of the triangle: a at the origin, b at (e, 0), x above, the
+ * source below the edge. */
+static double through_triangle(const sl_geodesics *g, const double *distance, int32_t c, double best)
 {
-    const double da = distance[a], db = distance[b], ax = edge_length(g, a, x), bx = edge_length(g, b, x);
-    const double around = fmin(da + ax, db + bx), e = edge_length(g, a, b);
+    const int32_t ca = next_corner(c), cb = next_corner(ca);
+    const double da = distance[g->tri[ca]], db = distance[g->tri[cb]];
+    if (da >= best && db >= best) {
+        return best;
+    }
+    const double e = g->length[c], ax = g->length[cb], bx = g->length[ca];
+    best = fmin(best, fmin(da + ax, db + bx));
     if (!(da + db < HUGE_VAL) || !(e > 0.0) || fabs(da - db) > e || da + db < e) {
-        return around;
+        return best;
     }
     const double px = (ax * ax - bx * bx + e * e) / (2.0 * e), py = sqrt(fmax(ax * ax - px * px, 0.0));
     const double sx = (da * da - db * db + e * e) / (2.0 * e), sy = sqrt(fmax(da * da - sx * sx, 0.0));
-    if (!(py + sy > 0.0)) {
-        return around;
+    const double cross = sx * (py + sy) + (px - sx) * sy; /* where the line meets the edge, times py + sy */
+    if (!(py + sy > 0.0) || cross < 0.0 || cross > e * (py + sy)) {
+        return best;
     }
-    const double cross = sx + (px - sx) * sy / (sy + py);
-    return cross >= 0.0 && cross <= e ? fmin(around, hypot(px - sx, py + sy)) : around;
+    return fmin(best, sqrt((px - sx) * (px - sx) + (py + sy) * (py + sy)));
 }
 
 static double best_distance(const sl_geodesics *g, const double *distance, int32_t x)
 {
     double best = distance[x];
     for (int32_t p = g->first[x]; p < g->first[x + 1]; p++) {
-        const int32_t c = g->incident[p], t = 3 * (c / 3);
-        best = fmin(best, through_triangle(g, distance, g->tri[t + (c + 1) % 3], g->tri[t + (c + 2) % 3], x));
+        best = through_triangle(g, distance, g->incident[p], best);
     }
     return best;
 }
@@ -145,13 +164,13 @@ static void march(sl_geodesics *g, int32_t source, double *distance)
         g->place[v] = SETTLED;
         g->order[g->settled++] = v;
         for (int32_t p = g->first[v]; p < g->first[v + 1]; p++) {
-            const int32_t c = g->incident[p], t = 3 * (c / 3);
-            for (int32_t k = 1; k < 3; k++) {
-                const int32_t x = g->tri[t + (c + k) % 3], other = g->tri[t + (c + 3 - k) % 3];
+            int32_t c = next_corner(g->incident[p]);
+            for (int32_t k = 0; k < 2; k++, c = next_corner(c)) {
+                const int32_t x = g->tri[c];
                 if (g->place[x] == SETTLED || x == v) {
                     continue;
                 }
-                const double d = through_triangle(g, distance, v, other, x);
+                const double d = through_triangle(g, distance, c, distance[x]);
                 if (d < distance[x]) {
                     distance[x] = d;
                     g->place[x] = g->place[x] == UNSEEN ? g->queued++ : g->place[x];

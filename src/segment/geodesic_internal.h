@@ -12,6 +12,7 @@ typedef struct sl_geodesics {
     int32_t *tri;      /* 3 nt: vertices */
     int32_t *first;    /* nv + 1: triangles of a vertex in `incident` ... */
     int32_t *incident; /* 3 nt: ... as corners 3 t + k */
+    double *length;    /* 3 nt: of the edge across from a corner */
     int32_t *heap, *place, *order;
     int32_t queued, settled;
 } sl_geodesics;
