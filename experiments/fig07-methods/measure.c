@@ -28,7 +28,7 @@ sl_segment_def method_def(int setting, int method)
     def.symmetry = SL_SYMMETRY_USE_OFF;
     def.method = cut_method[method];
     def.vsa_regions = method == VSA_TWO ? 2 : 0;
-    def.protect_first = def.protect_first && method != VSA_ERROR; /* its first cut is the whole segmentation */
+    def.protect_first = def.protect_first && method != VSA_ERROR && method != ISOCHARTS; /* first cuts in many parts */
     return def;
 }
 

@@ -17,7 +17,7 @@ static const cli_verb verb = {
                "statement by statement: on random graphs of twelve families (whole spectra up to 192 nodes, the\n"
                "lowest 30 pairs of one graph in a hundred, up to 4096 nodes) and generated meshes, or on the\n"
                "files named. A graph that violates one is written to theorem-SEED-INDEX.graph. Exit 0: holds;\n"
-               "5: violated, or over 0.1 % of the signs undecided; 3: bad input.\n\n"
+               "5: violated, or over 0.1 % of the signs undecided, but for one vector's; 3: bad input.\n\n"
                "A graph file: 'seamlab-theorem-graph 1', 'pairs N', 'fixed M', 'edges E', E lines 'A B', 'end';\n"
                "the mirror exchanges nodes i and i + N for i < N and fixes nodes 2N and up; '#' begins a comment.",
     .examples = "  seamlab theorem\n"

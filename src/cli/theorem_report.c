@@ -8,16 +8,18 @@ static const char *const verdict_name[] = {"holds", "undecided", "violated"};
 
 void theorem_report_close(theorem_report *report)
 {
+    int64_t most = 0; /* undecided signs of one built-in graph */
     for (int32_t k = 0; k < report->count; k++) {
         const theorem_row *row = &report->row[k];
         sl_theorem_add(&report->total, &row->result);
+        most = row->built_in && row->result.most_undecided > most ? row->result.most_undecided : most;
         for (int32_t s = 0; s < SL_THEOREM_STATEMENTS; s++) {
             report->violated = report->violated || row->result.tally[s].violated > 0;
             report->signs += row->built_in ? row->result.tally[s].signs : 0;
             report->signs_undecided += row->built_in ? row->result.tally[s].signs_undecided : 0;
         }
     }
-    report->decided = (double)report->signs_undecided <= report->undecided_share * (double)report->signs;
+    report->decided = sl_theorem_signs_suffice(report->signs, report->signs_undecided, most, report->undecided_share);
 }
 
 static int64_t asked(const sl_theorem_tally *t)

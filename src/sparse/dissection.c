@@ -65,21 +65,11 @@ static void sort_breadth_first(dissector *d, int32_t *nodes, int32_t count)
     d->stamp += 2;
 }
 
-/* The edges between the two sides as a bipartite graph over the shores. */
-static void collect_cut(dissector *d, const int32_t *nodes, int32_t middle)
+static bool to_the_right(const void *user, int32_t v, int32_t w)
 {
-    const int64_t right_mark = 2 * d->stamp + 1;
-    sl_cut_begin(&d->cut);
-    for (int32_t k = 0; k < middle; k++) {
-        const int64_t edges_before = d->cut.edges;
-        for (int64_t p = d->graph->first[nodes[k]]; p < d->graph->first[nodes[k] + 1]; p++) {
-            if (d->mark[d->graph->adj[p]] == right_mark) {
-                sl_cut_add(&d->cut, d->graph->adj[p]);
-            }
-        }
-        sl_cut_close(&d->cut, nodes[k], edges_before);
-    }
-    sl_cut_cover(&d->cut);
+    (void)v;
+    const dissector *d = user;
+    return d->mark[w] == 2 * d->stamp + 1;
 }
 
 /* Moves the cover to the end: nodes = left side, right side, separator. Returns the size of the separator. */
@@ -118,7 +108,7 @@ static bool bisect(dissector *d, range r, int32_t *left_end, int32_t *right_end)
     for (int32_t k = 0; k < count; k++) {
         d->mark[nodes[k]] = 2 * d->stamp + (k >= middle);
     }
-    collect_cut(d, nodes, middle);
+    sl_cut_find(&d->cut, d->graph->first, d->graph->adj, nodes, 0, middle, to_the_right, d);
     int32_t from_left = 0;
     for (int32_t l = 0; l < d->cut.shores.left_count; l++) {
         from_left += d->cut.shores.left_in[l];

@@ -64,32 +64,41 @@ typedef struct sl_cut {
 SL_NODISCARD sl_status sl_cut_init(sl_cut *cut, const sl_adjacency *graph);
 void sl_cut_clear(sl_cut *cut);
 
-/* A cut is gathered so: begin; for each node of the left side add its neighbours on the right one, then close it; then
- * cover, which makes of it the smallest set of nodes that touches all edges: shores.left_in and right_in. */
-static inline void sl_cut_begin(sl_cut *cut)
+/* Does the edge from v on the left side to w cross the cut? */
+typedef bool sl_cut_crosses(const void *user, int32_t v, int32_t w);
+
+/* The smallest set of nodes that touches all edges of a cut: shores.left_in and right_in. Of the shores gathered
+ * before.
+ */
+void sl_cut_cover(sl_cut *cut);
+
+/* Gathers the edges that cross, of a left side of nodes node[0 .. count - 1], or begin .. begin + count - 1 where node
+ * is NULL; then covers them. Neighbours of v: adj[first[v]] .. adj[first[v + 1] - 1]. In line, so that `crosses` is. */
+static inline void sl_cut_find(sl_cut *cut, const int64_t *first, const int32_t *adj, const int32_t *node,
+                               int32_t begin, int32_t count, sl_cut_crosses *crosses, const void *user)
 {
     cut->edges = 0;
     cut->shores.left_count = cut->shores.right_count = 0;
-}
-
-static inline void sl_cut_add(sl_cut *cut, int32_t neighbour)
-{
-    if (cut->right_id[neighbour] == -1) {
-        cut->right_id[neighbour] = cut->shores.right_count;
-        cut->right[cut->shores.right_count++] = neighbour;
+    for (int32_t k = 0; k < count; k++) {
+        const int32_t v = node != NULL ? node[k] : begin + k;
+        const int64_t before = cut->edges;
+        for (int64_t p = first[v]; p < first[v + 1]; p++) {
+            const int32_t w = adj[p];
+            if (!crosses(user, v, w)) {
+                continue;
+            }
+            if (cut->right_id[w] == -1) {
+                cut->right_id[w] = cut->shores.right_count;
+                cut->right[cut->shores.right_count++] = w;
+            }
+            cut->adj[cut->edges++] = cut->right_id[w];
+        }
+        if (cut->edges > before) {
+            cut->first[cut->shores.left_count] = before;
+            cut->left[cut->shores.left_count++] = v;
+        }
     }
-    cut->adj[cut->edges++] = cut->right_id[neighbour];
+    sl_cut_cover(cut);
 }
-
-/* edges_before: cut->edges before the node's neighbours were added. */
-static inline void sl_cut_close(sl_cut *cut, int32_t node, int64_t edges_before)
-{
-    if (cut->edges > edges_before) {
-        cut->first[cut->shores.left_count] = edges_before;
-        cut->left[cut->shores.left_count++] = node;
-    }
-}
-
-void sl_cut_cover(sl_cut *cut);
 
 #endif

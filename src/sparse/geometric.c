@@ -225,21 +225,16 @@ static void renumber_graph(halver *d, const sl_adjacency *graph, int32_t *place)
     d->first[d->n] = filled;
 }
 
-/* Edges from [begin, middle) to [middle, end) as a bipartite graph over its shores. */
-static void collect_cut(halver *d, int32_t begin, int32_t middle, int32_t end)
+/* Edges from [begin, middle) to [middle, end). */
+typedef struct split {
+    const bool *taken;
+    int32_t middle, end;
+} split;
+
+static bool to_the_right(const void *user, int32_t v, int32_t w)
 {
-    sl_cut_begin(&d->cut);
-    for (int32_t k = begin; k < middle; k++) {
-        const int64_t edges_before = d->cut.edges;
-        for (int64_t p = d->first[k]; p < d->first[k + 1] && !d->taken[k]; p++) {
-            const int32_t q = d->adj[p];
-            if (q >= middle && q < end && !d->taken[q]) {
-                sl_cut_add(&d->cut, q);
-            }
-        }
-        sl_cut_close(&d->cut, k, edges_before);
-    }
-    sl_cut_cover(&d->cut);
+    const split *s = user;
+    return w >= s->middle && w < s->end && !s->taken[w] && !s->taken[v];
 }
 
 /* Pushes the cover of the cut; returns its size. */
@@ -285,7 +280,8 @@ static void dissect(halver *d, int32_t begin, int32_t end)
         list_leaf(d, begin, end);
         return;
     }
-    collect_cut(d, begin, middle, end);
+    const split s = {d->taken, middle, end};
+    sl_cut_find(&d->cut, d->first, d->adj, NULL, begin, middle - begin, to_the_right, &s);
     if (push_separator(d) > largest_separator * (end - begin)) {
         d->separator_top = bottom;
         list_leaf(d, begin, end);

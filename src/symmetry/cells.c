@@ -39,7 +39,7 @@ static sl_status allocate(const sl_mesh *mesh, const sl_raw_cells *raw, const sl
 }
 
 /* Numbers the cell of raw corner h next, its corners from h on. renumber: raw corner -> corner, -1 = not yet;
- * c->halfedge holds the raw corner for now. */
+ * c->halfedge holds the raw corner until all are numbered. */
 static void reach(const sl_raw_cells *raw, sl_cells *c, int32_t *renumber, int32_t cell, int32_t h)
 {
     int32_t k = c->first[cell], at = h;

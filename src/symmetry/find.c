@@ -65,7 +65,7 @@ static sl_status list_facets(const sl_mesh *mesh, sl_symmetry *s)
     }
     for (int32_t k = 0; k < s->components; k++) {
         s->first[k + 1] += s->first[k];
-        s->original[k] = s->first[k]; /* for now: where the next facet goes */
+        s->original[k] = s->first[k]; /* while facets are sorted: where the next one goes */
     }
     for (int32_t f = 0; f < mesh->nf; f++) {
         const int32_t k = s->component[f], at = s->original[k]++;

@@ -61,6 +61,7 @@ void sl_theorem_add(sl_theorem_result *total, const sl_theorem_result *one)
     }
     total->graphs += one->graphs;
     total->nodes += one->nodes;
+    total->most_undecided = one->most_undecided > total->most_undecided ? one->most_undecided : total->most_undecided;
     total->largest_difference = fmax(total->largest_difference, one->largest_difference);
     total->largest_bound = fmax(total->largest_bound, one->largest_bound);
     total->blocks += one->blocks;
@@ -86,6 +87,15 @@ static double largest_bound(const sl_solution *s)
     return largest;
 }
 
+static int64_t undecided_signs(const sl_theorem_result *r)
+{
+    int64_t signs = 0;
+    for (int32_t k = 0; k < SL_THEOREM_STATEMENTS; k++) {
+        signs += r->tally[k].signs_undecided;
+    }
+    return signs < r->nodes ? signs : r->nodes;
+}
+
 sl_status sl_theorem_check(const sl_theorem_graph *graph, const sl_theorem_def *def, const sl_context *context,
                            sl_theorem_result *out)
 {
@@ -106,6 +116,7 @@ sl_status sl_theorem_check(const sl_theorem_graph *graph, const sl_theorem_def *
     SL_TRY(sl_state_joint(graph, &solution, &r));
     r.lowest_index = solution.lowest_skew;
     r.largest_bound = largest_bound(&solution);
+    r.most_undecided = undecided_signs(&r);
     *out = r;
 cleanup:
     sl_solution_clear(&solution);

@@ -24,10 +24,14 @@ typedef struct sl_theorem_run_def {
     int32_t least, most;    /* nodes of the small ones, whole spectra; default 8, 192 */
     int32_t large;          /* nodes of the large ones, at most; default 4096 */
     sl_theorem_def check;   /* sabotage: only of graph 0 */
-    double undecided_share; /* of signs that may stay undecided; default 1e-3 */
+    double undecided_share; /* of signs that may stay undecided, but for one vector; default 1e-3 */
 } sl_theorem_run_def;
 
 sl_theorem_run_def sl_theorem_run_default(void);
+
+/* Are few enough signs undecided? At most `share` of them, those of one graph (result.most_undecided) left out: a
+ * single localised vector may leave some open, which is nothing among millions but a large share of some thousands. */
+bool sl_theorem_signs_suffice(int64_t signs, int64_t undecided, int64_t most_undecided, double share);
 
 /* What the graph of an index is: its family, the size asked for. Deterministic in (seed, index). SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_theorem_graph_of(const sl_theorem_run_def *def, int32_t index, int32_t *family,
@@ -40,7 +44,7 @@ typedef struct sl_theorem_run {
     int32_t violated;           /* index of the first graph with a violated statement, -1 = none */
     sl_theorem_result evidence; /* its result */
     int64_t signs, signs_undecided;
-    bool decided; /* signs_undecided is within def.undecided_share */
+    bool decided; /* see sl_theorem_signs_suffice */
 } sl_theorem_run;
 
 /* All of it, in parallel over graphs; progress is reported. SL_OUT_OF_MEMORY, SL_CANCELLED, SL_INTERNAL. Same bytes for

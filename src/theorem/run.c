@@ -39,6 +39,11 @@ sl_theorem_run_def sl_theorem_run_default(void)
                                 .undecided_share = 1e-3};
 }
 
+bool sl_theorem_signs_suffice(int64_t signs, int64_t undecided, int64_t most_undecided, double share)
+{
+    return (double)(undecided - most_undecided) <= share * (double)signs;
+}
+
 /* The last hundredth of the graphs is large. */
 static int32_t small_graphs(const sl_theorem_run_def *def)
 {
@@ -159,7 +164,8 @@ static void judge_signs(const sl_theorem_run_def *def, sl_theorem_run *run)
         run->signs += run->total.tally[k].signs;
         run->signs_undecided += run->total.tally[k].signs_undecided;
     }
-    run->decided = (double)run->signs_undecided <= def->undecided_share * (double)run->signs;
+    run->decided =
+        sl_theorem_signs_suffice(run->signs, run->signs_undecided, run->total.most_undecided, def->undecided_share);
 }
 
 sl_status sl_theorem_run_all(const sl_theorem_run_def *def, const sl_context *context, sl_theorem_run **out)

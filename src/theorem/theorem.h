@@ -43,6 +43,7 @@ typedef struct sl_theorem_tally {
 typedef struct sl_theorem_result {
     sl_theorem_tally tally[SL_THEOREM_STATEMENTS];
     int64_t graphs, nodes;
+    int64_t most_undecided;    /* signs of one graph, but no more than one vector of it has */
     double largest_difference; /* of corresponding eigenvalues, over ||L||_1 */
     double largest_bound;      /* on a vector that was used */
     int64_t blocks;            /* components of the half, those that no choice of halves sets right left out */

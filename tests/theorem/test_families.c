@@ -163,6 +163,26 @@ static void too_many_undecided_signs_are_noticed(void **state)
     sl_theorem_run_free(out);
 }
 
+/* Among few signs one localised vector is a large share: it is let pass, two of them are not. */
+static void one_localised_vector_is_no_failure_of_a_small_run(void **state)
+{
+    (void)state;
+    static const uint64_t seeds[] = {16, 17};
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
+        sl_theorem_run_def def = sl_theorem_run_default();
+        def.graphs = 12;
+        def.seed = seeds[k];
+        sl_theorem_run *out = run(def, 1);
+        assert_true((double)out->signs_undecided > def.undecided_share * (double)out->signs);
+        assert_true(out->decided && out->violated == -1);
+        assert_in_range(out->total.most_undecided, 1, def.most);
+        sl_theorem_run_free(out);
+    }
+    assert_true(sl_theorem_signs_suffice(4000, 94, 90, 1e-3));
+    assert_false(sl_theorem_signs_suffice(4000, 95, 90, 1e-3));
+    assert_false(sl_theorem_signs_suffice(100000000, 104097, 4096, 1e-3));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -172,6 +192,7 @@ int main(void)
         cmocka_unit_test(a_broken_run_names_the_graph_and_the_statement),
         cmocka_unit_test(a_run_can_be_cancelled),
         cmocka_unit_test(too_many_undecided_signs_are_noticed),
+        cmocka_unit_test(one_localised_vector_is_no_failure_of_a_small_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
