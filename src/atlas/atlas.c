@@ -16,6 +16,7 @@ sl_atlas_def sl_atlas_default(void)
     return (sl_atlas_def){
         .segment = sl_segment_default(),
         .pack = sl_pack_default(),
+        .optimize = sl_optimize_default(),
         .seams = SL_SEAMS_AUTOMATIC,
         .check_resolution = 4096,
     };
@@ -206,6 +207,30 @@ static sl_status warn_of_symmetry(sl_atlas *atlas, const sl_atlas_def *def)
     return SL_OK;
 }
 
+/* Pieces that the search could not cut, or not within its targets. */
+static sl_status warn_of_search(sl_atlas *atlas, const sl_atlas_def *def)
+{
+    const sl_optimize_info info = atlas->optimized;
+    if (info.failed > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text,
+                 "the search found no valid charts for %d of %d pieces: they are cut by recursion", info.failed,
+                 info.pieces);
+    }
+    if (info.missed > 0) {
+        sl_warning *w = push_warning(atlas, -1);
+        if (w == NULL) {
+            return SL_OUT_OF_MEMORY;
+        }
+        snprintf(w->text, sizeof w->text, "%d of %d pieces are not within the targets (L2 %.4g, mean s1/s2 %.4g)",
+                 info.missed, info.pieces, def->optimize.target_stretch, def->optimize.target_angle);
+    }
+    return SL_OK;
+}
+
 /* A chart that is not what was asked for is named. */
 static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
 {
@@ -239,7 +264,8 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
         }
         snprintf(w->text, sizeof w->text, "%d facets without area get one texel each", atlas->repair.degenerate_faces);
     }
-    const sl_status status = warn_of_symmetry(atlas, def);
+    sl_status status = warn_of_symmetry(atlas, def);
+    status = status == SL_OK ? warn_of_search(atlas, def) : status;
     return status == SL_OK ? warn_of_bent_facets(atlas, def) : status;
 }
 

@@ -137,7 +137,6 @@ static json_t *options_json(const sl_atlas_def *def)
     json_object_set_new(j, "rule", json_string(rule_name(s->rule)));
     json_object_set_new(j, "vectors", json_integer(s->vectors));
     json_object_set_new(j, "pair", json_string(pairing_name(s->pairing)));
-    json_object_set_new(j, "filter", json_boolean(s->filter));
     json_object_set_new(j, "smooth", json_integer(s->smooth));
     json_object_set_new(j, "join", json_boolean(s->join));
     json_object_set_new(j, "sew", json_boolean(s->sew));
@@ -148,6 +147,15 @@ static json_t *options_json(const sl_atlas_def *def)
     json_object_set_new(j, "energy", json_string(s->flatten.abf.energy == SL_ABF_WEIGHTED ? "weighted" : "unweighted"));
     json_object_set_new(j, "tutte", json_boolean(s->flatten.tutte));
     json_object_set_new(j, "minimise_stretch", json_boolean(s->flatten.minimise_stretch));
+    json_object_set_new(j, "best", json_boolean(def->best));
+    if (def->best) {
+        static const char *const protect[] = {"none", "axis", "first"};
+        json_object_set_new(j, "target_stretch", number(def->optimize.target_stretch));
+        json_object_set_new(j, "target_angle", number(def->optimize.target_angle));
+        json_object_set_new(j, "chart_cost", number(def->optimize.chart_cost));
+        json_object_set_new(j, "seam_cost", number(def->optimize.seam_cost));
+        json_object_set_new(j, "protect", json_string(protect[def->optimize.protect]));
+    }
     json_object_set_new(j, "resolution", json_integer(def->pack.resolution));
     json_object_set_new(j, "margin", number(def->pack.margin));
     return j;
@@ -224,6 +232,7 @@ static json_t *splits_json(const sl_segmentation *seg)
         json_object_set_new(j, "smoothed", json_boolean(s->smoothed));
         json_object_set_new(j, "symmetry", json_string(split_symmetry_name(s->symmetry)));
         json_object_set_new(j, "straddling_facets", json_integer(s->fixed));
+        json_object_set_new(j, "optimised", json_boolean(s->optimised));
         json_object_set_new(j, "because", json_string(sl_flatten_verdict_name(s->because)));
         json_array_append_new(list, j);
     }
@@ -267,7 +276,8 @@ static json_t *fallbacks_json(const sl_segmentation *seg)
     }
     for (int32_t k = 0; k < seg->nsplit; k++) {
         const sl_split_symmetry symmetry = seg->split[k].symmetry;
-        fiedler += seg->split[k].vector < 0 && symmetry != SL_SPLIT_MIRROR && symmetry != SL_SPLIT_PLANE;
+        fiedler += seg->split[k].vector < 0 && symmetry != SL_SPLIT_MIRROR && symmetry != SL_SPLIT_PLANE &&
+                   !seg->split[k].optimised;
     }
     return json_pack("{s:i, s:i, s:i, s:i}", "tutte_charts", tutte, "lscm_charts", lscm, "stretch_minimised_charts",
                      minimised, "fiedler_splits", fiedler);
@@ -290,6 +300,13 @@ static json_t *atlas_json(const sl_atlas *atlas, const sl_atlas_def *def)
     json_object_set_new(j, "merges", json_integer(seg->merges));
     json_object_set_new(j, "warnings", warnings_json(atlas));
     json_object_set_new(j, "fallbacks", fallbacks_json(seg));
+    if (def->best) {
+        const sl_optimize_info *info = &atlas->optimized;
+        json_object_set_new(j, "search",
+                            json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "pieces", info->pieces, "failed", info->failed,
+                                      "missed", info->missed, "cuts", info->cuts, "sewings", info->sewings, "trials",
+                                      info->trials));
+    }
     json_object_set_new(j, "symmetry", symmetry_json(atlas));
     json_object_set_new(j, "charts", charts_json(atlas));
     json_object_set_new(j, "splits", splits_json(seg));

@@ -112,7 +112,7 @@ static void print_summary(cli_run *run, const sl_mesh *mesh, const sl_segmentati
 }
 
 /* The animation shows the atlas that grows, so the whole way is gone. */
-static int animate_file(cli_run *run, const sl_polygons *polygons, const sl_segment_def *def,
+static int animate_file(cli_run *run, const sl_polygons *polygons, const cli_segment_options *options,
                         const segment_outputs *out)
 {
     sl_diag diag = sl_diag_none();
@@ -120,7 +120,9 @@ static int animate_file(cli_run *run, const sl_polygons *polygons, const sl_segm
     sl_apng *apng = NULL;
     sl_status status = SL_OK;
     sl_atlas_def whole = sl_atlas_default();
-    whole.segment = *def;
+    whole.segment = options->def;
+    whole.best = options->best;
+    whole.optimize = options->optimize;
     SL_TRY(sl_unwrap(polygons, &whole, &run->context, &atlas, &diag));
     SL_TRY(cli_animate_segmentation(atlas, &run->context, &apng));
     SL_TRY(write_outputs(out, polygons, atlas->mesh, atlas->segmentation, run->json, &diag));
@@ -132,7 +134,7 @@ cleanup:
     return cli_fail(run, status, &diag);
 }
 
-static int segment_file(cli_run *run, const char *path, const sl_segment_def *def, const segment_outputs *out)
+static int segment_file(cli_run *run, const char *path, const cli_segment_options *options, const segment_outputs *out)
 {
     sl_diag diag = sl_diag_none();
     sl_meshfile *file = NULL;
@@ -147,13 +149,17 @@ static int segment_file(cli_run *run, const char *path, const sl_segment_def *de
     }
     sl_meshfile_polygons(file, &polygons);
     if (out->animation != NULL) {
-        const int animated = animate_file(run, &polygons, def, out);
+        const int animated = animate_file(run, &polygons, options, out);
         sl_meshfile_free(file);
         return animated;
     }
     SL_TRY(sl_mesh_build(&polygons, &mesh, NULL, &diag));
     SL_TRY(sl_triangulation_create(mesh, &triangulation));
-    SL_TRY(sl_segment(mesh, triangulation, def, &run->context, &seg));
+    if (options->best) {
+        SL_TRY(sl_optimize_segment(mesh, triangulation, &options->def, &options->optimize, &run->context, &seg, NULL));
+    } else {
+        SL_TRY(sl_segment(mesh, triangulation, &options->def, &run->context, &seg));
+    }
     SL_TRY(write_outputs(out, &polygons, mesh, seg, run->json, &diag));
     print_summary(run, mesh, seg);
 cleanup:
@@ -200,5 +206,5 @@ int cli_segment(int argc, char **argv)
         return code;
     }
     cli_segment_apply(&segment);
-    return cli_end(&run, segment_file(&run, files[0], &segment.def, &out));
+    return cli_end(&run, segment_file(&run, files[0], &segment, &out));
 }

@@ -16,6 +16,8 @@ static void load_def(cli_segment_options *o, sl_segment_def def)
 void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
 {
     load_def(o, sl_segment_default());
+    o->optimize = sl_optimize_default();
+    o->protect = (int32_t)o->optimize.protect;
     o->preset = 0;
     for (int a = 2; a < argc; a++) {
         const bool next = strcmp(argv[a], "--preset") == 0 && a + 1 < argc && strcmp(argv[a + 1], "paper") == 0;
@@ -29,8 +31,18 @@ void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
 void cli_segment_table(cli_segment_options *o, cli_option *table)
 {
     const cli_option entries[CLI_SEGMENT_OPTIONS] = {
-        {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper", NULL,
-         "paper = as printed; other options override"},
+        {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper|best", NULL,
+         "paper = as printed, best = fewest charts and shortest seams by search; other options override"},
+        {"target-stretch", 0, CLI_REAL, &o->optimize.target_stretch, 1.0, 1e6, NULL, "L2",
+         "best: of the whole atlas (1.05)"},
+        {"target-angle", 0, CLI_REAL, &o->optimize.target_angle, 1.0, 1e6, NULL, "R",
+         "best: the atlas's mean s1/s2 (1.2)"},
+        {"chart-cost", 0, CLI_REAL, &o->optimize.chart_cost, 0.0, 1e6, NULL, "C",
+         "best: a chart weighs as much as so long a seam, over sqrt(area) (0.3)"},
+        {"seam-cost", 0, CLI_REAL, &o->optimize.seam_cost, 0.0, 1e6, NULL, "C",
+         "best: weight of the seams' length (1)"},
+        {"protect", 0, CLI_CHOICE, &o->protect, 0, 0, "none|axis|first", NULL,
+         "best: seams that are never sewn: axes, or the first spectral cuts, too (axis)"},
         {"method", 0, CLI_CHOICE, &o->method, 0, 0, "spectral|pca|vsa|fiedler|random|isocharts|embedding", NULL,
          "how a chart is cut in parts: the others are there to compare with"},
         {"clusters", 0, CLI_INT, &o->def.clusters, 2, 1000000, NULL, "N", "embedding: parts of the first cut (2)"},
@@ -47,8 +59,6 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
         {"rule", 0, CLI_CHOICE, &o->rule, 0, 0, "longest|length-lambda|lookahead", NULL, "which passing cut is taken"},
         {"vectors", 0, CLI_INT, &o->def.vectors, 2, 1000, NULL, "N", "eigenvectors a cut (30)"},
         {"pair", 0, CLI_CHOICE, &o->pairing, 0, 0, "auto|on|off", NULL, "triangles back into quads for the graph"},
-        {"filter", 0, CLI_ON_OFF, &o->def.filter, 0, 0, NULL, NULL,
-         "only vectors with connected halves cut; off, by length, to compare (on)"},
         {"smooth", 0, CLI_INT, &o->def.smooth, 0, 100, NULL, "K", "band of the minimum cut in rings, 0 = off (2)"},
         {"join", 0, CLI_ON_OFF, &o->def.join, 0, 0, NULL, NULL, "join border loops by shortest paths (on)"},
         {"sew", 0, CLI_ON_OFF, &o->def.sew, 0, 0, NULL, NULL, "merge charts while they stay valid (on)"},
@@ -78,4 +88,7 @@ void cli_segment_apply(cli_segment_options *o)
     o->def.rule = (sl_cut_rule)o->rule;
     o->def.pairing = (sl_pairing)o->pairing;
     o->def.flatten.abf.energy = (sl_abf_energy)o->energy;
+    o->best = o->preset == 2;
+    o->optimize.protect = (sl_protect)o->protect;
+    o->optimize.max_stretch = o->def.flatten.max_stretch;
 }

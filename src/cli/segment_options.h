@@ -4,14 +4,16 @@
 #define SL_CLI_SEGMENT_OPTIONS_H
 
 #include "cli/options.h"
-#include "segment/segment.h"
+#include "optimize/optimize.h"
 
 typedef struct cli_segment_options {
     sl_segment_def def;
-    int32_t method, rule, pairing, energy, preset, symmetry; /* positions in their choices */
+    sl_optimize_def optimize;
+    bool best;                                                        /* --preset best: cut by sl_optimize_segment */
+    int32_t method, rule, pairing, energy, preset, symmetry, protect; /* positions in their choices */
 } cli_segment_options;
 
-#define CLI_SEGMENT_OPTIONS 26
+#define CLI_SEGMENT_OPTIONS 30
 
 /* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands. */
 void cli_segment_preset(cli_segment_options *o, int argc, char **argv);

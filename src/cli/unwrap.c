@@ -19,6 +19,7 @@ static const cli_verb verb = {
     .examples = "  seamlab unwrap model.obj -o model-uv.obj\n"
                 "  seamlab unwrap model.ply -o model-uv.ply --preview pictures --max-stretch 1.2\n"
                 "  seamlab unwrap model.obj -o paper.obj --preset paper\n"
+                "  seamlab unwrap model.obj -o best.obj --preset best --target-stretch 1.02\n"
                 "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n"
                 "  seamlab unwrap model.obj -o own.obj --symmetry off\n",
     .min_files = 1,
@@ -211,6 +212,8 @@ int cli_unwrap(int argc, char **argv)
     }
     cli_segment_apply(&o.segment);
     o.def.segment = o.segment.def;
+    o.def.best = o.segment.best;
+    o.def.optimize = o.segment.optimize;
     sl_diag diag = sl_diag_none();
     sl_meshfile *file = NULL;
     sl_atlas *atlas = NULL;

@@ -37,7 +37,6 @@ typedef struct sl_optimize_info {
     int32_t missed;         /* pieces whose targets were not met */
     int32_t cuts, sewings;  /* accepted */
     int32_t trials;         /* candidate cuts and sewings solved */
-    double seconds[4];      /* CPU by stage: first cuts, cuts, sewing, finish; of the calling threads */
 } sl_optimize_info;
 
 /* sl_segment with each component, or half of one that its mirror image copies, cut by the optimiser instead of by the

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 static const int ROUNDS = 3;  /* of cutting and sewing */
@@ -23,10 +24,10 @@ sl_optimize_def sl_optimize_default(void)
                              .max_cuts = 400};
 }
 
-/* What the pieces report to, each in its own place. */
+/* What the pieces report to, side by side: sums of whole numbers do not depend on the order. */
 typedef struct optimizer {
     const sl_optimize_def *def;
-    sl_optimize_info *info;
+    atomic_int pieces, missed, cuts, sewings, trials;
 } optimizer;
 
 /* The scale at which a chart adds least to the atlas's L2: I and a agree. */
@@ -142,8 +143,8 @@ static sl_status search_proxy(sl_opt_state *fine, proxy *p, bool *done)
         }
         SL_TRY(sl_opt_balance(fine));
         sl_opt_totals(fine, &total);
-        const double share = fmax((total.stretch - 1.0) / (fine->def->target_stretch - 1.0),
-                                  (total.angle - 1.0) / (fine->def->target_angle - 1.0));
+        const double share = fmax((total.stretch - 1.0) / fmax(fine->def->target_stretch - 1.0, 1e-9),
+                                  (total.angle - 1.0) / fmax(fine->def->target_angle - 1.0, 1e-9));
         if (share <= 1.0 && share >= ENOUGH) {
             break;
         }
@@ -184,7 +185,7 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
                            const sl_context *context, double *corner_uv, bool *done)
 {
     sl_status status = SL_OK;
-    const optimizer *o = user;
+    optimizer *o = user;
     sl_opt_surface surface = {0};
     sl_opt_state state = {0};
     *done = false;
@@ -195,8 +196,15 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
     SL_TRY(sl_opt_state_init(&surface, o->def, context, &state));
     SL_TRY(optimise(&state, def, triangulation, done));
     if (*done) {
+        sl_opt_total total;
+        sl_opt_totals(&state, &total);
+        o->missed += !sl_opt_within(&state, &total);
         write_back(&state, piece, corner_uv);
     }
+    o->pieces++;
+    o->cuts += state.info.cuts;
+    o->sewings += state.info.sewings;
+    o->trials += state.info.trials;
 cleanup:
     sl_opt_state_clear(&state);
     sl_opt_surface_clear(&surface);
@@ -207,11 +215,23 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
                               const sl_optimize_def *def, const sl_context *context, sl_segmentation **out,
                               sl_optimize_info *info)
 {
-    optimizer o = {.def = def, .info = info};
+    optimizer o = {.def = def};
     const sl_cutter cutter = {cut_piece, &o};
     sl_segment_def with = *segment;
     with.cutter = &cutter;
     with.sew = false;
     with.flatten.max_stretch = def->max_stretch;
-    return sl_segment(mesh, triangulation, &with, context, out);
+    const sl_status status = sl_segment(mesh, triangulation, &with, context, out);
+    if (status == SL_OK && info != NULL) {
+        *info = (sl_optimize_info){.pieces = o.pieces,
+                                   .failed = o.pieces,
+                                   .missed = o.missed,
+                                   .cuts = o.cuts,
+                                   .sewings = o.sewings,
+                                   .trials = o.trials};
+        for (int32_t k = 0; k < (*out)->nsplit; k++) {
+            info->failed -= (*out)->split[k].optimised;
+        }
+    }
+    return status;
 }

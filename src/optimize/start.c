@@ -21,12 +21,14 @@ static sl_segment_def start_def(const sl_opt_state *state, const sl_segment_def 
 }
 
 /* Flags of the edges that are cut in `mesh` and were not in the surface's. */
-static void take_seams(sl_opt_state *state, const sl_mesh *mesh)
+static void take_seams(sl_opt_state *state, const sl_mesh *mesh, const sl_segmentation *seg)
 {
     const sl_patch *p = state->surface->patch;
+    const bool protect = state->def->protect == SL_PROTECT_FIRST;
     for (int32_t c = 0; c < 3 * p->nt; c++) {
         const int32_t h = p->corner[c], to = p->corner[sl_corner_next(c)];
         state->cut[c] = to == sl_next(mesh, h) && p->twin[c] >= 0 && mesh->twin[h] < 0;
+        state->keep[c] = protect && state->cut[c] != 0 && seg->cut_after[h] == 0;
     }
 }
 
@@ -101,7 +103,7 @@ sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment, const
     *started = true;
     SL_TRY(sl_mesh_copy(state->surface->mesh, &mesh));
     SL_TRY(sl_segment(mesh, triangulation, &def, state->context, &seg));
-    take_seams(state, mesh);
+    take_seams(state, mesh, seg);
     SL_TRY(take_charts(state, seg, started));
     SL_TRY(solve_charts(state, seg, started));
 cleanup:
