@@ -137,6 +137,7 @@ static json_t *options_json(const sl_atlas_def *def)
     json_object_set_new(j, "rule", json_string(rule_name(s->rule)));
     json_object_set_new(j, "vectors", json_integer(s->vectors));
     json_object_set_new(j, "pair", json_string(pairing_name(s->pairing)));
+    json_object_set_new(j, "filter", json_boolean(s->filter));
     json_object_set_new(j, "smooth", json_integer(s->smooth));
     json_object_set_new(j, "join", json_boolean(s->join));
     json_object_set_new(j, "sew", json_boolean(s->sew));

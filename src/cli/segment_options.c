@@ -59,6 +59,8 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
         {"rule", 0, CLI_CHOICE, &o->rule, 0, 0, "longest|length-lambda|lookahead", NULL, "which passing cut is taken"},
         {"vectors", 0, CLI_INT, &o->def.vectors, 2, 1000, NULL, "N", "eigenvectors a cut (30)"},
         {"pair", 0, CLI_CHOICE, &o->pairing, 0, 0, "auto|on|off", NULL, "triangles back into quads for the graph"},
+        {"filter", 0, CLI_ON_OFF, &o->def.filter, 0, 0, NULL, NULL,
+         "only vectors with connected halves cut; off, by length, to compare (on)"},
         {"smooth", 0, CLI_INT, &o->def.smooth, 0, 100, NULL, "K", "band of the minimum cut in rings, 0 = off (2)"},
         {"join", 0, CLI_ON_OFF, &o->def.join, 0, 0, NULL, NULL, "join border loops by shortest paths (on)"},
         {"sew", 0, CLI_ON_OFF, &o->def.sew, 0, 0, NULL, NULL, "merge charts while they stay valid (on)"},
