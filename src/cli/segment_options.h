@@ -13,7 +13,7 @@ typedef struct cli_segment_options {
     int32_t method, rule, pairing, energy, preset, symmetry, protect; /* positions in their choices */
 } cli_segment_options;
 
-#define CLI_SEGMENT_OPTIONS 30
+#define CLI_SEGMENT_OPTIONS 31
 
 /* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands. */
 void cli_segment_preset(cli_segment_options *o, int argc, char **argv);
