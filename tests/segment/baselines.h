@@ -229,4 +229,19 @@ static inline void test_check_regions(const sl_mesh *m, const int32_t *region, i
     free(parts);
 }
 
+/* Bodies of several kinds, by number. */
+static inline sl_mesh *test_body(test_rng *rng, int kind)
+{
+    switch (kind % 4) {
+    case 0:
+        return test_spiky_mesh(rng, 7, 0, 0.0, TEST_TRIANGLES);
+    case 1:
+        return test_spiky_mesh(rng, 8, 5, 1.2, TEST_MIXED);
+    case 2:
+        return test_torus_mesh(rng, 24, 12, 0.4, TEST_QUADS); /* its quads are not plane */
+    default:
+        return test_tube_mesh(rng, 12, 18, 5.0, TEST_MIXED);
+    }
+}
+
 #endif
