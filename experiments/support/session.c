@@ -112,6 +112,11 @@ static bool glue_one(exp_run *run, sl_session *session, const candidate *c, doub
 
 int32_t exp_session_glue(exp_run *run, sl_session *session, int32_t count, double stretch)
 {
+    return exp_session_glue_where(run, session, count, stretch, NULL);
+}
+
+int32_t exp_session_glue_where(exp_run *run, sl_session *session, int32_t count, double stretch, exp_facet_fn *of)
+{
     int32_t glued = 0;
     for (bool any = true; any && glued < count;) {
         candidate *list = NULL;
@@ -119,7 +124,9 @@ int32_t exp_session_glue(exp_run *run, sl_session *session, int32_t count, doubl
         any = false;
         if (find_arcs(session, &list, &n) == SL_OK) {
             for (int32_t k = 0; k < n && !any; k++) {
-                any = glue_one(run, session, &list[k], stretch);
+                const sl_mesh *mesh = sl_session_mesh(session);
+                any = (of == NULL || (of(mesh, list[k].facet[0]) && of(mesh, list[k].facet[1]))) &&
+                      glue_one(run, session, &list[k], stretch);
             }
         }
         glued += any;

@@ -24,6 +24,10 @@ bool exp_session_try(exp_run *run, sl_session *session, const sl_action *action)
  * stretches more than `stretch` (L2): at most `count` times. Returns how many. SL_OUT_OF_MEMORY gives fewer. */
 int32_t exp_session_glue(exp_run *run, sl_session *session, int32_t count, double stretch);
 
+/* The same among facets that `of` says yes to, on both sides of the seam. */
+typedef bool exp_facet_fn(const sl_mesh *mesh, int32_t facet);
+int32_t exp_session_glue_where(exp_run *run, sl_session *session, int32_t count, double stretch, exp_facet_fn *of);
+
 /* Model and atlas as the session shows them. */
 SL_NODISCARD sl_status exp_session_draw(exp_run *run, const sl_session *session, const sl_view *view,
                                         const sl_picture *picture, const char *file);
