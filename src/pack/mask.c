@@ -139,38 +139,38 @@ static int compare_runs(const void *pa, const void *pb)
     return (a->left > b->left) - (a->left < b->left);
 }
 
-/* Lists the covered runs of a row; list may be NULL to count only. */
+/* Lists the covered runs of a row; list has room for as many as a row can have. Returns how many. */
 static int32_t list_row(const raster *r, int32_t row, sl_mask_run *list)
 {
     const int32_t *diff = r->diff + (int64_t)row * r->stride;
     int32_t count = 0, sum = 0, begin = -1;
     for (int32_t x = 0; x <= r->width; x++) {
+        if (diff[x] == 0) {
+            continue;
+        }
         sum += diff[x];
-        const bool covered = x < r->width && sum > 0;
-        if (covered && begin < 0) {
+        if (sum > 0 && begin < 0) {
             begin = x;
-        } else if (!covered && begin >= 0) {
-            if (list != NULL) {
-                list[count] = (sl_mask_run){row, begin, x - begin};
-            }
-            count++;
+        } else if (sum <= 0 && begin >= 0) {
+            list[count++] = (sl_mask_run){row, begin, x - begin};
             begin = -1;
         }
+    }
+    if (begin >= 0) { /* never, by exact arithmetic: the sum of a row is 0 */
+        list[count++] = (sl_mask_run){row, begin, r->width - begin};
     }
     return count;
 }
 
 static sl_status list_runs(const raster *r, sl_mask *out)
 {
-    int32_t count = 0;
+    int64_t capacity = 0;
     for (int32_t row = 0; row < r->height; row++) {
-        count += list_row(r, row, NULL);
-    }
-    out->run = sl_alloc(count, sizeof *out->run);
-    if (out->run == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    for (int32_t row = 0; row < r->height; row++) {
+        const sl_status status =
+            sl_reserve((void **)&out->run, &capacity, (int64_t)out->count + r->width / 2 + 1, sizeof *out->run);
+        if (status != SL_OK) {
+            return status;
+        }
         out->count += list_row(r, row, out->run + out->count);
     }
     double sum[3] = {0.0, 0.0, 0.0}; /* exact: whole numbers far below 2^53 */

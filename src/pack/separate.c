@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    COARSE = 4,         /* cells of the grid along one of the coarse grid */
+    COARSE_GRID = 64,   /* cells along a page where charts look for places far away */
     NEAR_TURNS = 5,     /* as it stands, and a little turned */
     FAR_TURNS = 10,     /* ... by right angles, and by chance */
     STRAIGHT_REACH = 8, /* cells: how far around a chart's place it may move as it stands */
@@ -28,7 +28,8 @@ typedef struct separation {
     const sl_pack_task *task;
     const sl_separate_def *def;
     int32_t turns;
-    double *angle; /* count x turns */
+    int32_t factor; /* cells of the grid along one of the coarse grid */
+    double *angle;  /* count x turns */
     sl_sheet sheet, coarse;
     sl_spot *spot;
     int32_t *weight, *overlap; /* count x count: by pair; overlaps in cells */
@@ -157,13 +158,13 @@ static void look_far(separation *s, int32_t chart, choice *best)
 {
     const int32_t low[2] = {0, 0}, size[2] = {s->sheet.width, s->sheet.height};
     fill_field(s, chart, low, size, &s->far);
-    sl_field_coarsen(&s->far, COARSE, &s->far_coarse);
+    sl_field_coarsen(&s->far, s->factor, &s->far_coarse);
     for (int32_t t = 0; t < s->turns && best->cost > 0; t++) {
         const sl_mask *mask = &s->coarse.mask[(int64_t)chart * s->turns + t], *fine = mask_at(s, chart, t);
         int32_t x = 0, y = 0;
         if (coarse_place(s, mask, &x, &y)) {
-            const choice from = {0, t, (int32_t)floor((x + mask->origin[0]) * COARSE - fine->origin[0] + 0.5),
-                                 (int32_t)floor((y + mask->origin[1]) * COARSE - fine->origin[1] + 0.5)};
+            const choice from = {0, t, (int32_t)floor((x + mask->origin[0]) * s->factor - fine->origin[0] + 0.5),
+                                 (int32_t)floor((y + mask->origin[1]) * s->factor - fine->origin[1] + 0.5)};
             look_around(s, &s->far, chart, from, TURNED_REACH, best);
         }
     }
@@ -325,7 +326,7 @@ static sl_status try_scale(separation *s, double scale, sl_arrangement *best, bo
     choose_angles(s, best->pose);
     SL_TRY(sl_sheet_init(s->task, scale, s->def->grid, s->turns, s->angle, &s->sheet));
     if (s->def->far) {
-        SL_TRY(sl_sheet_init(s->task, scale, s->def->grid / COARSE, s->turns, s->angle, &s->coarse));
+        SL_TRY(sl_sheet_init(s->task, scale, s->def->grid / s->factor, s->turns, s->angle, &s->coarse));
     }
     *fits = take_places(s, best->pose) && push_apart(s);
     if (*fits) {
@@ -362,6 +363,7 @@ static sl_status separation_init(separation *s)
     } else {
         s->turns = s->def->far && s->def->rotations == SL_ROTATE_RIGHT ? 4 : 1;
     }
+    s->factor = grid > COARSE_GRID ? grid / COARSE_GRID : 1;
     s->rng = sl_rng_seed(s->def->seed);
     s->angle = sl_alloc((int64_t)n * s->turns, sizeof *s->angle);
     s->spot = sl_alloc(n, sizeof *s->spot);
@@ -376,7 +378,7 @@ static sl_status separation_init(separation *s)
     }
     SL_TRY(sl_field_init(grid, rows, &s->near));
     SL_TRY(sl_field_init(s->def->far ? grid : 1, s->def->far ? rows : 1, &s->far));
-    SL_TRY(sl_field_init(grid / COARSE, rows / COARSE, &s->far_coarse));
+    SL_TRY(sl_field_init(grid / s->factor, rows / s->factor + 1, &s->far_coarse));
 cleanup:
     return status;
 }

@@ -266,7 +266,7 @@ static void more_effort_finds_larger_scales(void **state)
         sl_placement place[MAX_CHARTS];
         sl_pack_info info;
         for (int32_t k = 0; k < 2; k++) {
-            const sl_pack_def def = {.resolution = 128, .margin = 1.0, .effort = 4 * k};
+            const sl_pack_def def = {.resolution = 128, .margin = 1.0, .effort = 3 * k};
             assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &info), SL_OK);
             sum[k] += info.fill;
         }
@@ -341,7 +341,7 @@ static void the_number_of_threads_changes_nothing(void **state)
 {
     (void)state;
     test_rng rng = test_rng_seed(0x7a25);
-    chart_set *set = random_charts(&rng, 8);
+    chart_set *set = random_charts(&rng, 5);
     const sl_pack_def def = {.resolution = 128, .margin = 2.0, .effort = 6};
     sl_placement place[2][MAX_CHARTS];
     sl_pack_info info[2];
