@@ -1,50 +1,18 @@
 /* Figure 5: the straightening tool, on sequences of edges inside a chart. */
 #include "support/sheet.h"
 
-#include <stdio.h>
-#include <string.h>
-
-static sl_status show(exp_run *run, exp_page *page, exp_claims *claims, const char *model, int32_t charts)
-{
-    static const char *const what[] = {"free", "one line", "two lines", "three lines"};
-    sl_status status = SL_OK;
-    exp_sheet sheet = {0};
-    exp_wish wish = {0};
-    sl_sector_table table[4];
-    sl_abf_chart *chart[4] = {NULL};
-    memset(table, 0, sizeof table);
-    exp_solution solution;
-    int32_t *border = NULL, count = 0;
-    SL_TRY(exp_sheet_open(run, model, charts, -1, &sheet));
-    SL_TRY(exp_sheet_border(&sheet, &border, &count));
-    exp_solution_header(page, model);
-    for (int k = 0; k < 4; k++) {
-        if (k > 0) {
-            SL_TRY(exp_wish_line(run, &sheet, border, count, EXP_LINE_APART, &wish));
-        }
-        SL_TRY(exp_sheet_solve(run, &sheet, &wish, &table[k], &chart[k], &solution));
-        exp_solution_row(page, claims, model, what[k], &wish, &solution);
-    }
-    exp_page_table_end(page);
-    SL_TRY(exp_show_pair(run, page, &sheet, &wish, model, sl_abf_chart_uv(chart[0]), sl_abf_chart_uv(chart[3]),
-                         "The same edges straightened."));
-cleanup:
-    for (int k = 0; k < 4; k++) {
-        sl_abf_chart_free(chart[k]);
-        sl_sectors_clear(&table[k]);
-    }
-    exp_wish_clear(&wish);
-    sl_free(border);
-    exp_sheet_close(&sheet);
-    return status;
-}
+static const exp_lines lines = {
+    .what = {"free", "one line", "two lines", "three lines"},
+    .mode = {EXP_LINE_APART, EXP_LINE_APART, EXP_LINE_APART, EXP_LINE_APART},
+    .caption = "The same edges straightened.",
+};
 
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(show(run, page, claims, "rock", 0));
-    SL_TRY(show(run, page, claims, "turtle", 0));
-    SL_TRY(show(run, page, claims, "pullover", 0));
+    SL_TRY(exp_show_lines(run, page, claims, "rock", &lines));
+    SL_TRY(exp_show_lines(run, page, claims, "turtle", &lines));
+    SL_TRY(exp_show_lines(run, page, claims, "pullover", &lines));
 cleanup:
     return status;
 }

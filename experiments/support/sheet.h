@@ -110,4 +110,15 @@ void exp_sheet_window(const exp_sheet *sheet, const double *uv, double window[3]
 SL_NODISCARD sl_status exp_show_pair(exp_run *run, exp_page *page, const exp_sheet *sheet, const exp_wish *wish,
                                      const char *stem, const double *before, const double *after, const char *caption);
 
+/* One line after the other drawn on a chart: step 0 is free, step k has one line more, in its mode. */
+typedef struct exp_lines {
+    const char *what[4];
+    exp_line_mode mode[4]; /* of step 0: any */
+    const char *caption;   /* of the last picture */
+} exp_lines;
+
+/* A table of the four steps on the model's largest chart, and it before and after. */
+SL_NODISCARD sl_status exp_show_lines(exp_run *run, exp_page *page, exp_claims *claims, const char *model,
+                                      const exp_lines *lines);
+
 #endif

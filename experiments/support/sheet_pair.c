@@ -1,6 +1,7 @@
 #include "support/sheet.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { WIDTH = 1500, HEIGHT = 700 };
 
@@ -21,5 +22,39 @@ sl_status exp_show_pair(exp_run *run, exp_page *page, const exp_sheet *sheet, co
     exp_page_figure(page, "", file[1], "the chart after", caption);
     exp_page_html(page, "</div>\n");
 cleanup:
+    return status;
+}
+
+sl_status exp_show_lines(exp_run *run, exp_page *page, exp_claims *claims, const char *model, const exp_lines *lines)
+{
+    sl_status status = SL_OK;
+    exp_sheet sheet = {0};
+    exp_wish wish = {0};
+    sl_sector_table table[4];
+    sl_abf_chart *chart[4] = {NULL};
+    memset(table, 0, sizeof table);
+    exp_solution solution;
+    int32_t *border = NULL, count = 0;
+    SL_TRY(exp_sheet_open(run, model, 0, -1, &sheet));
+    SL_TRY(exp_sheet_border(&sheet, &border, &count));
+    exp_solution_header(page, model);
+    for (int k = 0; k < 4; k++) {
+        if (k > 0) {
+            SL_TRY(exp_wish_line(run, &sheet, border, count, lines->mode[k], &wish));
+        }
+        SL_TRY(exp_sheet_solve(run, &sheet, &wish, &table[k], &chart[k], &solution));
+        exp_solution_row(page, claims, model, lines->what[k], &wish, &solution);
+    }
+    exp_page_table_end(page);
+    SL_TRY(exp_show_pair(run, page, &sheet, &wish, model, sl_abf_chart_uv(chart[0]), sl_abf_chart_uv(chart[3]),
+                         lines->caption));
+cleanup:
+    for (int k = 0; k < 4; k++) {
+        sl_abf_chart_free(chart[k]);
+        sl_sectors_clear(&table[k]);
+    }
+    exp_wish_clear(&wish);
+    sl_free(border);
+    exp_sheet_close(&sheet);
     return status;
 }
