@@ -36,7 +36,7 @@ SL_NODISCARD sl_status sl_abf_chart_create(const sl_patch *patch, const sl_abf_d
  * Where that leads to no valid converged state the angles given are forgotten: what follows, and the statuses, are
  * those of sl_abf_chart_create. sl_abf_carry_angles finds `angle` from another patch. It saves a step or none on an
  * easy chart, for the gradient falls linearly from wherever it starts (SL_ABF_EXACT takes 3 to 5 steps instead of 4 to
- * 12); what it saves are the solves of a homotopy where the targets are hard. */
+ * 12), tens of steps where lines are forced onto a steep one, and the homotopy where targets are hard. */
 SL_NODISCARD sl_status sl_abf_chart_create_from(const sl_patch *patch, const sl_abf_def *def, const double *angle,
                                                 const sl_context *context, sl_abf_chart **out);
 

@@ -1,8 +1,9 @@
 /* Charts that start from the angles of others: cut, sewn and grown ones, and angles that are of no use. */
 #include "mesh/mesh_fixtures.h"
 #include "param/abf_chart.h"
-#include "param/abf_charts.h"
 #include "param/abf_internal.h"
+#include "param/abf_sectors.h"
+#include "param/constraint_charts.h"
 
 enum { ROWS = 14, COLUMNS = 12 };
 
@@ -272,12 +273,45 @@ static void useless_angles_are_forgotten(void **state)
     clear(&s);
 }
 
+/* Lines across a steep chart take tens of steps, an angle near its limit a homotopy; known angles one solve. */
+static void hard_targets_are_met_at_once_from_known_angles(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; kind++) {
+        sl_patch *patch =
+            kind == 0 ? chart_hexagon(RINGS, 0.0, chart_bumps, 4.5, 1) : chart_hexagon(5, 0.15, chart_cap, 0.9, 1);
+        int32_t a[9], b[9];
+        sl_sector_table table;
+        sl_abf_def def = sl_abf_default();
+        if (kind == 0) {
+            const sl_constraint lines[2] = {lattice_path(patch, 4.5, (int32_t[]){-4, 0}, (int32_t[]){1, 0}, 9, a),
+                                            lattice_path(patch, 4.5, (int32_t[]){0, -4}, (int32_t[]){0, 1}, 9, b)};
+            table = compile(patch, 2, lines);
+        } else {
+            table = make_sectors(patch, true);
+            const int32_t last = table.view.count - 1;
+            table.theta[last] = 0.82 * (table.first[last + 1] - table.first[last]) * PI;
+        }
+        def.sectors = &table.view;
+        sl_abf_chart *cold = open_from(patch, &def, NULL), *warm = open_from(patch, &def, sl_abf_chart_angles(cold));
+        const sl_abf_chart_info *before = sl_abf_chart_info_of(cold), *info = sl_abf_chart_info_of(warm);
+        assert_true(before->reached == 1.0 && before->iterations > 40 && (before->solves > 3) == (kind == 1));
+        assert_true(info->reached == 1.0 && info->solves == 1 && info->taken_over == patch->nt);
+        assert_true(info->iterations < before->iterations / 2);
+        sl_abf_chart_free(warm);
+        sl_abf_chart_free(cold);
+        sl_sectors_clear(&table);
+        sl_patch_free(patch);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(angles_are_carried_to_the_same_triangles),
         cmocka_unit_test(charts_cut_sewn_and_grown_start_near_their_solution),
         cmocka_unit_test(a_solution_is_recognised),
+        cmocka_unit_test(hard_targets_are_met_at_once_from_known_angles),
         cmocka_unit_test(a_triangle_with_an_angle_that_is_none_starts_from_phi),
         cmocka_unit_test(useless_angles_are_forgotten),
     };
