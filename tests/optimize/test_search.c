@@ -1,0 +1,248 @@
+/* Whole searches: their targets, their charts, threads, scales, options; and the steps of one. */
+#include "optimize/checks.h"
+
+static sl_mesh *shape(test_rng *rng, int kind)
+{
+    switch (kind % 4) {
+    case 0:
+        return test_spiky_mesh(rng, 7, 4, 1.2, TEST_MIXED);
+    case 1:
+        return test_torus_mesh(rng, 18, 10, 0.35, TEST_TRIANGLES);
+    case 2:
+        return test_spiky_mesh(rng, 7, 0, 0.0, TEST_TRIANGLES);
+    default:
+        return test_patch_mesh(rng, 12, 11, TEST_QUADS, NULL);
+    }
+}
+
+static sl_segmentation *search(sl_mesh *mesh, const sl_triangulation *t, const sl_optimize_def *def, int32_t threads,
+                               sl_optimize_info *info)
+{
+    sl_thread_pool *pool = NULL;
+    sl_segmentation *s = NULL;
+    const sl_segment_def segment = sl_segment_default();
+    assert_int_equal(sl_thread_pool_create(threads, &pool), SL_OK);
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
+    assert_int_equal(sl_optimize_segment(mesh, t, &segment, def, &context, &s, info), SL_OK);
+    sl_thread_pool_free(pool);
+    return s;
+}
+
+static double seams_of(const sl_mesh *m)
+{
+    double sum = 0.0;
+    for (int32_t h = 0; h < m->nh; h++) {
+        sum += m->sew[h] > h ? sl_mesh_edge_length(m, h) : 0.0;
+    }
+    return sum;
+}
+
+static void every_shape_meets_its_targets_in_valid_charts(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5ea);
+    for (int trial = 0; trial < 4 * test_multiplier(); trial++) {
+        sl_mesh *mesh = shape(&rng, trial);
+        sl_triangulation *t = test_triangulate(mesh);
+        const sl_optimize_def def = sl_optimize_default();
+        sl_optimize_info info;
+        sl_segmentation *s = search(mesh, t, &def, 1, &info);
+        assert_int_equal(info.failed, 0);
+        assert_int_equal(info.missed, 0);
+        assert_int_equal(info.pieces, 1);
+        test_check_pointers(mesh);
+        test_check_partition(mesh, s);
+        test_check_glued(mesh, s);
+        for (int32_t c = 0; c < s->nchart; c++) {
+            int32_t flips = 0;
+            const double l2 = test_chart_stretch(mesh, t, s, c, &flips);
+            assert_int_equal(flips, 0);
+            assert_int_equal(s->chart[c].flat.verdict, SL_CHART_VALID);
+            assert_true(s->chart[c].flat.certificate.embedded && l2 <= def.max_stretch);
+            assert_true(s->chart[c].topology.genus == 0 && s->chart[c].topology.loops == 1);
+        }
+        const sl_distortion d = test_whole_distortion(mesh, t, s);
+        assert_true(d.l2 <= def.target_stretch * (1.0 + 1e-9) && d.angle_mean <= def.target_angle * (1.0 + 1e-9));
+        sl_segmentation_free(s);
+        sl_triangulation_free(t);
+        sl_mesh_free(mesh);
+    }
+}
+
+static void tighter_targets_cost_longer_seams(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x7a6);
+    sl_mesh *mesh = shape(&rng, 0), *loose = NULL, *tight = NULL;
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_optimize_def def = sl_optimize_default();
+    assert_int_equal(sl_mesh_copy(mesh, &loose), SL_OK);
+    assert_int_equal(sl_mesh_copy(mesh, &tight), SL_OK);
+    def.target_stretch = 1.2;
+    def.target_angle = 1.6;
+    sl_segmentation_free(search(loose, t, &def, 1, NULL));
+    def.target_stretch = 1.02;
+    def.target_angle = 1.1;
+    sl_segmentation_free(search(tight, t, &def, 1, NULL));
+    assert_true(seams_of(loose) < seams_of(tight));
+    sl_mesh_free(loose);
+    sl_mesh_free(tight);
+    sl_mesh_free(mesh);
+    sl_triangulation_free(t);
+}
+
+static void the_bytes_do_not_depend_on_the_threads(void **state)
+{
+    (void)state;
+    static const int32_t threads[] = {1, 2, 5};
+    test_rng rng = test_rng_seed(0x7e4);
+    sl_mesh *mesh = shape(&rng, 0), *copy[3];
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_segmentation *s[3];
+    const sl_optimize_def def = sl_optimize_default();
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(sl_mesh_copy(mesh, &copy[k]), SL_OK);
+        s[k] = search(copy[k], t, &def, threads[k], NULL);
+        assert_int_equal(s[k]->nchart, s[0]->nchart);
+        assert_memory_equal(s[k]->corner_uv, s[0]->corner_uv, 2 * sizeof(double) * (size_t)mesh->nh);
+        assert_memory_equal(copy[k]->twin, copy[0]->twin, sizeof(int32_t) * (size_t)mesh->nh);
+    }
+    for (int k = 0; k < 3; k++) {
+        sl_segmentation_free(s[k]);
+        sl_mesh_free(copy[k]);
+    }
+    sl_triangulation_free(t);
+    sl_mesh_free(mesh);
+}
+
+static void a_target_out_of_reach_is_reported(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x0ff);
+    sl_mesh *mesh = shape(&rng, 2);
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_optimize_def def = sl_optimize_default();
+    def.target_stretch = 1.0;
+    def.target_angle = 1.0;
+    def.max_cuts = 3;
+    sl_optimize_info info;
+    sl_segmentation *s = search(mesh, t, &def, 1, &info);
+    assert_int_equal(info.missed + info.failed, 1);
+    test_check_partition(mesh, s);
+    sl_segmentation_free(s);
+    sl_triangulation_free(t);
+    sl_mesh_free(mesh);
+}
+
+static void a_first_cut_that_is_protected_stays(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xf15);
+    sl_optimize_def def = sl_optimize_default();
+    def.protect = SL_PROTECT_FIRST;
+    test_surface s = test_surface_of(shape(&rng, 0));
+    sl_opt_state opt = test_started(&s, &def);
+    const size_t size = 3 * (size_t)s.surface.patch->nt;
+    uint8_t *kept = malloc(size);
+    int32_t protected = 0;
+    memcpy(kept, opt.keep, size);
+    assert_int_equal(sl_opt_cut(&opt), SL_OK);
+    assert_int_equal(sl_opt_sew(&opt), SL_OK);
+    test_check_state(&opt);
+    for (size_t h = 0; h < size; h++) {
+        assert_true(kept[h] == 0 || opt.cut[h] != 0);
+        protected += kept[h];
+    }
+    assert_true(protected > 0);
+    free(kept);
+    sl_opt_state_clear(&opt);
+    test_surface_clear(&s);
+}
+
+static void sewing_keeps_the_targets_and_shortens_the_seams(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5e3);
+    const sl_optimize_def def = sl_optimize_default();
+    for (int trial = 0; trial < 3 * test_multiplier(); trial++) {
+        test_surface s = test_surface_of(shape(&rng, trial));
+        sl_opt_state opt = test_started(&s, &def);
+        sl_opt_total cut, sewn;
+        assert_int_equal(sl_opt_cut(&opt), SL_OK);
+        test_check_state(&opt);
+        sl_opt_totals(&opt, &cut);
+        assert_true(sl_opt_within(&opt, &cut));
+        assert_int_equal(sl_opt_sew(&opt), SL_OK);
+        test_check_state(&opt);
+        sl_opt_totals(&opt, &sewn);
+        assert_true(sl_opt_within(&opt, &sewn));
+        assert_true(sewn.length <= cut.length);
+        sl_opt_state_clear(&opt);
+        test_surface_clear(&s);
+    }
+}
+
+static void scaling_by_a_power_of_two_changes_no_byte(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x2ca);
+    sl_mesh *mesh = shape(&rng, 1), *large = NULL;
+    sl_triangulation *t = test_triangulate(mesh);
+    const sl_optimize_def def = sl_optimize_default();
+    assert_int_equal(sl_mesh_copy(mesh, &large), SL_OK);
+    for (int32_t k = 0; k < 3 * mesh->nv; k++) {
+        large->xyz[k] *= 0x1p7;
+    }
+    sl_segmentation *a = search(mesh, t, &def, 1, NULL), *b = search(large, t, &def, 1, NULL);
+    assert_int_equal(a->nchart, b->nchart);
+    assert_memory_equal(mesh->twin, large->twin, sizeof *mesh->twin * (size_t)mesh->nh);
+    sl_segmentation_free(a);
+    sl_segmentation_free(b);
+    sl_mesh_free(mesh);
+    sl_mesh_free(large);
+    sl_triangulation_free(t);
+}
+
+static bool refuse(void *user, const char *stage, double fraction)
+{
+    (void)stage;
+    (void)fraction;
+    return --*(int *)user >= 0;
+}
+
+static void cancelling_leaves_the_mesh_as_it_was(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xca9);
+    sl_mesh *mesh = shape(&rng, 0), *before = NULL;
+    sl_triangulation *t = test_triangulate(mesh);
+    const sl_optimize_def def = sl_optimize_default();
+    const sl_segment_def segment = sl_segment_default();
+    assert_int_equal(sl_mesh_copy(mesh, &before), SL_OK);
+    for (int after = 0; after < 3; after++) {
+        int left = after;
+        const sl_context context = {.progress = refuse, .progress_user = &left};
+        sl_segmentation *s = (sl_segmentation *)&rng;
+        assert_int_equal(sl_optimize_segment(mesh, t, &segment, &def, &context, &s, NULL), SL_CANCELLED);
+        assert_null(s);
+        assert_memory_equal(mesh->twin, before->twin, sizeof *mesh->twin * (size_t)mesh->nh);
+    }
+    sl_mesh_free(mesh);
+    sl_mesh_free(before);
+    sl_triangulation_free(t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_shape_meets_its_targets_in_valid_charts),
+        cmocka_unit_test(tighter_targets_cost_longer_seams),
+        cmocka_unit_test(the_bytes_do_not_depend_on_the_threads),
+        cmocka_unit_test(a_target_out_of_reach_is_reported),
+        cmocka_unit_test(a_first_cut_that_is_protected_stays),
+        cmocka_unit_test(sewing_keeps_the_targets_and_shortens_the_seams),
+        cmocka_unit_test(scaling_by_a_power_of_two_changes_no_byte),
+        cmocka_unit_test(cancelling_leaves_the_mesh_as_it_was),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
