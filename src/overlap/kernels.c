@@ -6,7 +6,9 @@
 
 static bool snap(int64_t n, const double *uv, int32_t width, int32_t height, int32_t *position)
 {
-    const double reach_x = 0x1p20 / width, reach_y = 0x1p20 / height; /* 256 texels a unit: below the bound */
+    /* 256 texels a unit stay below the bound; what is out of range in small windows is seen to elsewhere. */
+    const double most = SL_RASTER_MAX_COORDINATE;
+    const double reach_x = fmin(0x1p20 / width, most), reach_y = fmin(0x1p20 / height, most);
     bool good = true;
     for (int64_t v = 0; v < n; v++) {
         const bool near = fabs(uv[2 * v]) < reach_x && fabs(uv[2 * v + 1]) < reach_y; /* a NaN compares false */

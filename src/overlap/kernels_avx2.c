@@ -21,7 +21,9 @@ AVX2 static inline __m128i snap_two(__m256d uv, __m256d half)
 AVX2 static bool snap(int64_t n, const double *uv, int32_t width, int32_t height, int32_t *position)
 {
     const __m256d half = _mm256_setr_pd(0.5 * width, 0.5 * height, 0.5 * width, 0.5 * height);
-    const __m256d reach = _mm256_div_pd(_mm256_set1_pd(0x1p19), half); /* as in the portable twin */
+    /* As in the portable twin. */
+    const __m256d reach =
+        _mm256_min_pd(_mm256_div_pd(_mm256_set1_pd(0x1p19), half), _mm256_set1_pd(SL_RASTER_MAX_COORDINATE));
     const __m256d sign_bit = _mm256_set1_pd(-0.0);
     __m256d good = _mm256_cmp_pd(half, half, _CMP_EQ_OQ);
     int64_t v = 0;

@@ -11,8 +11,8 @@ enum {
 };
 
 typedef struct sl_raster_kernels {
-    /* Lattice positions (x, y interleaved) of n points in a window of this size; false if one is not finite or not
-     * below SL_KERNEL_BOUND (then all positions are without meaning). */
+    /* Lattice positions (x, y interleaved) of n points in a window of this size; false if one is not finite, not
+     * below SL_KERNEL_BOUND, or beyond the coordinates that coverage takes (then all positions are without meaning). */
     bool (*snap)(int64_t n, const double *uv, int32_t width, int32_t height, int32_t *position);
     /* sign[t] of the triangles [begin, end): +1, -1, 0 by the raster's orientation. */
     void (*orient)(int64_t begin, int64_t end, int32_t *const corner[3], const int32_t *position, int8_t *sign);

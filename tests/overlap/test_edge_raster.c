@@ -269,6 +269,17 @@ static void wild_coordinates_are_refused_and_far_ones_counted(void **state)
     test_rng rng = test_rng_seed(0x71d);
     int32_t nv, nt;
     make_grid(&rng, 9, 0.3, &nv, &nt);
+    for (int32_t size = 1; size <= 128; size *= 2) { /* small windows, whose lattice would hold more */
+        sl_edge_raster *small = make_raster(nv, nt, size, 129 - size, 8, size == 4 || size == 128);
+        const double held = uv[74];
+        uv[74] = 16384.5;
+        assert_int_equal(sl_edge_raster_draw(small, uv, NULL), SL_BAD_INPUT);
+        uv[74] = -16384.0;
+        assert_int_equal(sl_edge_raster_draw(small, uv, NULL), SL_OK);
+        check_counts(small, nt, size, 129 - size);
+        uv[74] = held;
+        sl_edge_raster_free(small);
+    }
     sl_edge_raster *raster = make_raster(nv, nt, 300, 200, 16, false);
     assert_int_equal(sl_edge_raster_draw(raster, uv, NULL), SL_OK);
     const int64_t covered = sl_edge_raster_result(raster).covered;
