@@ -95,6 +95,7 @@ void sl_frame_free(sl_frame *f)
     }
     for (int k = 0; k < SL_FRAME_LAYERS; k++) {
         sl_free(f->lines[k].pair);
+        sl_free(f->lines[k].span);
     }
     sl_free(f->xyz);
     sl_free(f->normal);
@@ -156,11 +157,15 @@ sl_status sl_frame_set_lines(sl_frame *frame, int32_t layer, int32_t count, cons
         }
     }
     int32_t *pair = count > 0 ? sl_copy(vertex_pairs, count, 2 * sizeof *pair) : NULL;
-    if (count > 0 && pair == NULL) {
+    sl_frame_span *span = count > 0 ? sl_alloc(count, sizeof *span) : NULL;
+    if (count > 0 && (pair == NULL || span == NULL)) {
+        sl_free(pair);
+        sl_free(span);
         return SL_OUT_OF_MEMORY;
     }
     sl_free(frame->lines[layer].pair);
-    frame->lines[layer] = (sl_frame_lines){count, pair, {rgb[0], rgb[1], rgb[2]}, width};
+    sl_free(frame->lines[layer].span);
+    frame->lines[layer] = (sl_frame_lines){count, pair, span, {rgb[0], rgb[1], rgb[2]}, width};
     return SL_OK;
 }
 
@@ -179,9 +184,8 @@ static void draw_surface(void *user, int64_t begin, int64_t end, int32_t chunk)
 
 static void draw_lines(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
-    (void)chunk;
     const draw_task *task = user;
-    sl_frame_draw_lines(task->frame, (int32_t)begin, (int32_t)end, task->rgba);
+    sl_frame_draw_lines(task->frame, chunk, (int32_t)begin, (int32_t)end, task->rgba);
 }
 
 /* Rows of the visibility buffer begin on cache lines. */
@@ -226,6 +230,7 @@ sl_status sl_frame_draw(sl_frame *f, const sl_camera *camera, const sl_frame_sty
     }
     draw_task task = {f, rgba};
     sl_parallel_for(context, height, SL_FRAME_BAND, draw_surface, &task);
+    sl_frame_span_lines(f, context);
     sl_parallel_for(context, height, SL_FRAME_BAND, draw_lines, &task);
     return SL_OK;
 }

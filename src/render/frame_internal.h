@@ -36,6 +36,7 @@ typedef struct sl_frame_span {
 
 typedef struct sl_frame_lines {
     int32_t count, *pair;
+    sl_frame_span *span; /* bands of the last drawing; first > last: none */
     uint8_t rgb[3];
     double width;
 } sl_frame_lines;
@@ -110,8 +111,11 @@ uint32_t sl_frame_look_odd(const sl_frame *frame, int32_t t, int32_t x, int32_t 
 /* Cosine of a facet to the light. */
 float sl_frame_facet_cosine(const sl_frame *frame, int32_t t);
 
-/* Lays the lines over rows [row, row_end). All rows must have been filled. */
-void sl_frame_draw_lines(const sl_frame *frame, int32_t row, int32_t row_end, uint8_t *rgba);
+/* Finds the bands of all lines. */
+void sl_frame_span_lines(sl_frame *frame, const sl_context *context);
+
+/* Lays the band's lines over rows [row, row_end). All rows must have been filled. */
+void sl_frame_draw_lines(const sl_frame *frame, int32_t band, int32_t row, int32_t row_end, uint8_t *rgba);
 
 /* Triangle seen at a pixel, -1 = none. */
 static inline int32_t sl_frame_triangle(const sl_frame *frame, int32_t x, int32_t y)

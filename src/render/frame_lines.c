@@ -5,6 +5,7 @@
 #include <math.h>
 
 static const double depth_slack = 3e-4; /* of the key's range: snapped corners leave the plane by less */
+enum { LINE_CHUNK = 1 << 12 };
 
 static const double line_guard = 128.0; /* pixels beside the picture that clipped lines may reach */
 
@@ -12,12 +13,37 @@ static const double line_guard = 128.0; /* pixels beside the picture that clippe
 typedef struct stroke {
     double a[2], b[2], key[2], half;
     const uint8_t *rgb;
+    double d[2], per_square, per_major, reach, most; /* set when it is drawn */
+    bool steep;                                      /* the long axis is y */
 } stroke;
+
+/* Without calls, unlike the library's: a frame may hold a hundred thousand lines. */
+static inline double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* |x| below 2^31. */
+static inline int32_t floor_of(double x)
+{
+    const int32_t whole = (int32_t)x;
+    return whole - (x < whole);
+}
+
+static inline int32_t ceil_of(double x)
+{
+    return -floor_of(-x);
+}
 
 /* Depth of the surface seen at the pixel nearest to (x, y), followed along its own slope to (x, y). */
 static double surface_key(const sl_frame *f, double x, double y)
 {
-    const int32_t ix = (int32_t)floor(x + 0.5), iy = (int32_t)floor(y + 0.5);
+    const int32_t ix = floor_of(x + 0.5), iy = floor_of(y + 0.5);
     if (ix < 0 || iy < 0 || ix >= f->width || iy >= f->height) {
         return 2.0;
     }
@@ -32,8 +58,9 @@ static double surface_key(const sl_frame *f, double x, double y)
     const double bk = (double)b->key - (double)a->key, ck = (double)c->key - (double)a->key;
     const double scale = SL_SUBPIXELS / (bx * cy - cx * by);
     const double moved = key + scale * ((bk * cy - ck * by) * (x - ix) + (ck * bx - bk * cx) * (y - iy));
-    const double lo = (double)fminf(fminf(a->key, b->key), c->key), hi = (double)fmaxf(fmaxf(a->key, b->key), c->key);
-    return fmin(fmax(moved, lo), hi);
+    const double lo = lesser(lesser((double)a->key, (double)b->key), (double)c->key);
+    const double hi = greater(greater((double)a->key, (double)b->key), (double)c->key);
+    return lesser(greater(moved, lo), hi);
 }
 
 static void blend(uint8_t *out, const uint8_t rgb[3], double amount)
@@ -43,45 +70,51 @@ static void blend(uint8_t *out, const uint8_t rgb[3], double amount)
     }
 }
 
-/* The pixels across the line at position `at` of its long axis; `steep`: that axis is y. */
-static void cross_section(const sl_frame *f, const stroke *s, bool steep, int32_t at, int32_t row, int32_t row_end,
-                          uint8_t *rgba)
+/* How far a line's pixels are from its middle, at most 45 degrees askew. */
+static double reach_of(const stroke *s)
 {
-    const int major = steep ? 1 : 0, minor = 1 - major;
-    const double d[2] = {s->b[0] - s->a[0], s->b[1] - s->a[1]}, square = d[0] * d[0] + d[1] * d[1];
-    const double part = fmin(fmax((at - s->a[major]) / (d[major] == 0.0 ? 1.0 : d[major]), 0.0), 1.0);
-    const double middle[2] = {s->a[0] + part * d[0], s->a[1] + part * d[1]};
+    return 1.5 * (s->half + 0.5);
+}
+
+/* The pixels across the line at position `at` of its long axis. */
+static void cross_section(const sl_frame *f, const stroke *s, int32_t at, int32_t row, int32_t row_end, uint8_t *rgba)
+{
+    const int major = s->steep ? 1 : 0, minor = 1 - major;
+    const double part = lesser(greater((at - s->a[major]) * s->per_major, 0.0), 1.0);
+    const double middle[2] = {s->a[0] + part * s->d[0], s->a[1] + part * s->d[1]};
     if (s->key[0] + part * (s->key[1] - s->key[0]) > surface_key(f, middle[0], middle[1]) + depth_slack) {
         return;
     }
-    const double reach = 1.5 * (s->half + 0.5); /* at most 45 degrees askew */
-    const int32_t begin = (int32_t)fmax(ceil(middle[minor] - reach), minor == 1 ? row : 0);
-    const int32_t end = (int32_t)fmin(floor(middle[minor] + reach), minor == 1 ? row_end - 1 : f->width - 1);
+    const int32_t begin = ceil_of(greater(middle[minor] - s->reach, minor == 1 ? row : 0));
+    const int32_t end = floor_of(lesser(middle[minor] + s->reach, minor == 1 ? row_end - 1 : f->width - 1));
     for (int32_t k = begin; k <= end; k++) {
-        const int32_t x = steep ? k : at, y = steep ? at : k;
+        const int32_t x = s->steep ? k : at, y = s->steep ? at : k;
         const double px = x - s->a[0], py = y - s->a[1];
-        const double u = square > 0.0 ? fmin(fmax((px * d[0] + py * d[1]) / square, 0.0), 1.0) : 0.0;
-        const double distance = hypot(px - u * d[0], py - u * d[1]);
-        const double coverage = fmin(s->half + 0.5 - distance, fmin(2.0 * s->half, 1.0));
+        const double u = lesser(greater((px * s->d[0] + py * s->d[1]) * s->per_square, 0.0), 1.0);
+        const double dx = px - u * s->d[0], dy = py - u * s->d[1];
+        const double coverage = lesser(s->half + 0.5 - sqrt(dx * dx + dy * dy), s->most);
         if (coverage > 0.0) {
             blend(rgba + 4 * ((int64_t)y * f->width + x), s->rgb, coverage);
         }
     }
 }
 
-static void draw_stroke(const sl_frame *f, const stroke *s, int32_t row, int32_t row_end, uint8_t *rgba)
+static void draw_stroke(const sl_frame *f, stroke *s, int32_t row, int32_t row_end, uint8_t *rgba)
 {
-    const double reach = 1.5 * (s->half + 0.5);
-    if (!(fmax(s->a[1], s->b[1]) + reach >= row && fmin(s->a[1], s->b[1]) - reach < row_end)) {
-        return;
-    }
-    const bool steep = fabs(s->b[1] - s->a[1]) > fabs(s->b[0] - s->a[0]);
-    const int major = steep ? 1 : 0;
-    const double lo = fmin(s->a[major], s->b[major]), hi = fmax(s->a[major], s->b[major]);
-    const int32_t begin = (int32_t)fmax(ceil(lo - s->half), steep ? row : 0);
-    const int32_t end = (int32_t)fmin(floor(hi + s->half), steep ? row_end - 1 : f->width - 1);
+    s->reach = reach_of(s);
+    s->d[0] = s->b[0] - s->a[0];
+    s->d[1] = s->b[1] - s->a[1];
+    s->steep = fabs(s->d[1]) > fabs(s->d[0]);
+    s->most = lesser(2.0 * s->half, 1.0);
+    const int major = s->steep ? 1 : 0;
+    const double square = s->d[0] * s->d[0] + s->d[1] * s->d[1];
+    s->per_square = square > 0.0 ? 1.0 / square : 0.0;
+    s->per_major = s->d[major] != 0.0 ? 1.0 / s->d[major] : 0.0;
+    const double lo = lesser(s->a[major], s->b[major]), hi = greater(s->a[major], s->b[major]);
+    const int32_t begin = ceil_of(greater(lo - s->half, s->steep ? row : 0));
+    const int32_t end = floor_of(lesser(hi + s->half, s->steep ? row_end - 1 : f->width - 1));
     for (int32_t at = begin; at <= end; at++) {
-        cross_section(f, s, steep, at, row, row_end, rgba);
+        cross_section(f, s, at, row, row_end, rgba);
     }
 }
 
@@ -135,34 +168,63 @@ static bool clip_line(const sl_frame *f, int32_t v, int32_t w, stroke *s)
     return reach < SL_FRAME_FARTHEST; /* rounding may have spoilt it: false for NaN, too */
 }
 
-static bool find_line(const sl_frame *f, int32_t v, int32_t w, int32_t row, int32_t row_end, stroke *s)
+/* The line from v to w; s->half and s->rgb are set. */
+static bool find_line(const sl_frame *f, int32_t v, int32_t w, stroke *s)
 {
-    const sl_frame_vertex *a = &f->vertex[v], *b = &f->vertex[w];
-    if (a->x == SL_FRAME_FAR || b->x == SL_FRAME_FAR) {
+    const sl_frame_vertex *end[2] = {&f->vertex[v], &f->vertex[w]};
+    if (end[0]->x == SL_FRAME_FAR || end[1]->x == SL_FRAME_FAR) {
         return clip_line(f, v, w, s);
     }
-    const int32_t reach = (int32_t)(SL_SUBPIXELS * (1.5 * (s->half + 0.5) + 1.0)); /* more than draw_stroke's */
-    const int32_t lo = SL_SUBPIXELS * row - reach, hi = SL_SUBPIXELS * row_end + reach;
-    if ((a->y < lo && b->y < lo) || (a->y > hi && b->y > hi)) {
-        return false;
-    }
     for (int i = 0; i < 2; i++) {
-        const sl_frame_vertex *end = i == 0 ? a : b;
         double *at = i == 0 ? s->a : s->b;
-        at[0] = (double)end->x / SL_SUBPIXELS;
-        at[1] = (double)end->y / SL_SUBPIXELS;
-        s->key[i] = (double)end->key;
+        at[0] = (double)end[i]->x / SL_SUBPIXELS;
+        at[1] = (double)end[i]->y / SL_SUBPIXELS;
+        s->key[i] = (double)end[i]->key;
     }
     return true;
 }
 
-void sl_frame_draw_lines(const sl_frame *f, int32_t row, int32_t row_end, uint8_t *rgba)
+typedef struct span_task {
+    const sl_frame *frame;
+    const sl_frame_lines *lines;
+} span_task;
+
+static void span_lines(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const span_task *task = user;
+    const sl_frame *f = task->frame;
+    for (int64_t i = begin; i < end; i++) {
+        stroke s = {.half = 0.5 * task->lines->width, .rgb = task->lines->rgb};
+        sl_frame_span span = {1, 0};
+        if (find_line(f, task->lines->pair[2 * i], task->lines->pair[2 * i + 1], &s)) {
+            const double reach = reach_of(&s), last = f->height - 1;
+            const double lo = lesser(s.a[1], s.b[1]) - reach, hi = greater(s.a[1], s.b[1]) + reach;
+            if (hi >= 0.0 && lo <= last) {
+                span.first = (uint16_t)(floor_of(greater(lo, 0.0)) / SL_FRAME_BAND);
+                span.last = (uint16_t)(floor_of(lesser(hi, last)) / SL_FRAME_BAND);
+            }
+        }
+        task->lines->span[i] = span;
+    }
+}
+
+void sl_frame_span_lines(sl_frame *f, const sl_context *context)
+{
+    for (int layer = 0; layer < SL_FRAME_LAYERS; layer++) {
+        span_task task = {f, &f->lines[layer]};
+        sl_parallel_for(context, task.lines->count, LINE_CHUNK, span_lines, &task);
+    }
+}
+
+void sl_frame_draw_lines(const sl_frame *f, int32_t band, int32_t row, int32_t row_end, uint8_t *rgba)
 {
     for (int layer = 0; layer < SL_FRAME_LAYERS; layer++) {
         const sl_frame_lines *lines = &f->lines[layer];
         for (int64_t i = 0; i < lines->count; i++) {
             stroke s = {.half = 0.5 * lines->width, .rgb = lines->rgb};
-            if (find_line(f, lines->pair[2 * i], lines->pair[2 * i + 1], row, row_end, &s)) {
+            if (lines->span[i].first <= band && lines->span[i].last >= band &&
+                find_line(f, lines->pair[2 * i], lines->pair[2 * i + 1], &s)) {
                 draw_stroke(f, &s, row, row_end, rgba);
             }
         }
