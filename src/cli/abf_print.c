@@ -93,6 +93,10 @@ void abf_print_end(const abf_trace *t)
         return;
     }
     printf("layout: flipped %d, L2 %.6f, mean s1/s2 %.6f, max %.4f\n", f->flipped, d->l2, d->angle_mean, d->angle_max);
+    if (t->crossings > 0) {
+        printf("the chart overlaps itself: its border crosses itself %d time%s\n", t->crossings,
+               t->crossings == 1 ? "" : "s");
+    }
     for (int32_t k = 0; k < t->constraints->count; k++) {
         printf("constraint %d: off by %.2e degrees", k + 1, t->measure[k].angle * degrees);
         printf(t->constraints->item[k].kind == SL_CONSTRAINT_STRAIGHT ||

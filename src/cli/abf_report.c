@@ -132,6 +132,9 @@ static void write_iterations(sl_writer *w, const abf_trace *t)
                      "%.6f, largest %.4f.</p>\n",
                      abf_trace_verdict(t), last->floor ? ", at the rounding floor" : "", t->distortion.l2,
                      t->distortion.angle_mean, t->distortion.angle_max);
+    if (t->crossings > 0) {
+        sl_writer_format(w, "<p>The chart overlaps itself: its border crosses itself %d times.</p>\n", t->crossings);
+    }
 }
 
 /* How frame k is called: "start", "iteration 3", "solve 2, iteration 1". */

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "overlap/certificate.h"
 #include "param/reconstruct.h"
 
 #include <math.h>
@@ -122,6 +123,29 @@ static sl_status copy_matrix(const sl_csc *A, sl_csc **out)
     return status;
 }
 
+/* How often the border of a layout crosses or touches itself. */
+static sl_status count_crossings(const sl_patch *patch, const double *uv, int32_t *crossings)
+{
+    sl_status status = SL_OK;
+    sl_certificate certificate;
+    int32_t *first = NULL, *border = NULL, *pairs = NULL;
+    SL_TRY(sl_patch_border(patch, &first, &border));
+    const int32_t n = first[patch->loops];
+    pairs = sl_alloc(2 * (int64_t)n, sizeof *pairs);
+    SL_TRY(pairs != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t k = 0; k < n; k++) {
+        pairs[2 * (int64_t)k] = patch->tri[border[k]];
+        pairs[2 * (int64_t)k + 1] = patch->tri[sl_corner_next(border[k])];
+    }
+    SL_TRY(sl_certify_embedding(uv, patch->nt, patch->tri, n, pairs, &certificate));
+    *crossings = certificate.border_crossings;
+cleanup:
+    sl_free(first);
+    sl_free(border);
+    sl_free(pairs);
+    return status;
+}
+
 sl_status abf_trace_close(abf_trace *trace, const sl_abf *solver)
 {
     const sl_patch *patch = trace->pick->patch;
@@ -137,6 +161,7 @@ sl_status abf_trace_close(abf_trace *trace, const sl_abf *solver)
     if (uv != NULL) {
         SL_TRY(sl_distortion_measure_indexed(patch->nt, patch->tri, patch->xyz, uv, &trace->distortion));
         sl_constraints_measure(patch, c->count, c->item, trace->table, uv, trace->measure);
+        SL_TRY(count_crossings(patch, uv, &trace->crossings));
     }
 cleanup:
     return status;
@@ -245,6 +270,7 @@ static void write_head(sl_writer *w, const abf_trace *t)
         sl_writer_text(w, "}");
     }
     sl_writer_text(w, "],");
+    sl_writer_format(w, "\"borderCrossings\":%d,", t->crossings);
     if (t->chart.solves > 0) {
         sl_writer_format(w, "\"solves\":%d,", t->chart.solves);
         write_number(w, "reached", t->chart.reached);

@@ -38,6 +38,7 @@ typedef struct abf_trace {
     int64_t capacity;
     sl_csc *J, *M;            /* of the last iteration, on charts that show them, else NULL */
     sl_distortion distortion; /* of the last layout */
+    int32_t crossings;        /* of its border with itself: where the chart overlaps */
     sl_constraint_measure *measure;
 } abf_trace;
 

@@ -191,6 +191,7 @@ contains out.txt 'stopped short of the targets'
 contains out.txt 'degrees are left at the worst vertex'
 contains out.txt 'back to the last valid state'
 contains short.json '"reached":0.8'
+contains short.json '"borderCrossings":0'
 json short.json
 expect 4 "$seamlab" abf tent.obj --angle 1=340 --iterations 30
 contains out.txt 'stalled'
@@ -204,6 +205,11 @@ contains out.txt '"flip":0'
 expect 0 "$seamlab" abf tent.obj --pin 1=3,4 --pin 5=3,6 -o pinned.ply --quiet
 expect 2 "$seamlab" abf tent.obj --straight 1,2 # an edge is straight as it is
 expect 2 "$seamlab" abf tent.obj -o flat.off
+awk 'BEGIN { for (i = 0; i <= 60; i++) for (r = 1; r <= 1.5; r += 0.25) { a = 8.17 * i / 60
+    printf "v %.9f %.9f %.9f\n", r * cos(a), r * sin(a), 0.05 * a }
+    for (i = 0; i < 60; i++) for (k = 1; k <= 2; k++) { c = 3 * i + k; print "f", c, c + 1, c + 4, c + 3 } }' >ramp.obj
+expect 0 "$seamlab" abf ramp.obj # more than a turn, unrolled
+contains out.txt 'overlaps itself'
 if command -v script >/dev/null; then # a terminal, and the end of input that quits before it converges
     expect 0 script -qec "$seamlab abf tent.obj --angle 1=100 --step" /dev/null
     expect 4 script -qec "$seamlab abf tent.obj --angle 1=100 --step --strict" /dev/null
