@@ -7,7 +7,7 @@
 #include "support/pictures.h"
 #include "support/session.h"
 
-enum { WIDTH = 1600, HEIGHT = 700, SEAMS = 6, LINES = 4, TRIED = 24 };
+enum { WIDTH = 1600, HEIGHT = 700, SEAMS = 6, LINES = 4, TRIED = 60, LEAST_EDGES = 6 };
 
 static const double bound = 1.4;       /* L2 that a chart may reach */
 static const double line_share = 0.25; /* of an arc of seam, from its middle, is made straight */
@@ -57,11 +57,11 @@ static bool straighten(exp_run *run, sl_session *session, const line *l)
     int32_t *arc = NULL, count = 0, item[4];
     bool done = false;
     sl_action a = sl_action_default(SL_ACTION_STRAIGHTEN_BORDER), undo = sl_action_default(SL_ACTION_UNDO);
-    if (sl_session_arc(session, l->halfedge, &arc, &count) != SL_OK || count < 12) {
+    if (sl_session_arc(session, l->halfedge, &arc, &count) != SL_OK || count < LEAST_EDGES) {
         sl_free(arc);
         return false;
     }
-    const int32_t half = (int32_t)(0.5 * line_share * count), from = count / 2 - half, to = count / 2 + half;
+    const int32_t half = 1 + (int32_t)(0.5 * line_share * count), from = count / 2 - half, to = count / 2 + half;
     int sides = 0;
     bool good = true;
     for (int side = 0; side < 2 && good; side++) {

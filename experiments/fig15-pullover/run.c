@@ -61,6 +61,18 @@ static bool cut_front(exp_run *run, sl_session *session)
     return done;
 }
 
+/* What makes a chart overlap itself is taken back. */
+static bool try_straight(exp_run *run, sl_session *session, const sl_action *a, int32_t h)
+{
+    const sl_action undo = sl_action_default(SL_ACTION_UNDO);
+    sl_session_chart chart;
+    if (!exp_session_try(run, session, a)) {
+        return false;
+    }
+    sl_session_chart_info(session, sl_session_face_chart(session)[sl_session_mesh(session)->face[h]], &chart);
+    return chart.embedded || !exp_session_try(run, session, &undo);
+}
+
 /* Makes each run of border of a kind straight, from its first to its last vertex; returns how many. */
 static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *kind, double *length)
 {
@@ -85,7 +97,7 @@ static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *k
         sl_action a = sl_action_default(SL_ACTION_STRAIGHTEN_BORDER);
         sl_session_name_corner(session, h, item);
         sl_session_name_corner(session, last, item + 2);
-        if (edges > 1 && sl_action_set_items(&a, 4, item) == SL_OK && exp_session_try(run, session, &a)) {
+        if (edges > 1 && sl_action_set_items(&a, 4, item) == SL_OK && try_straight(run, session, &a, h)) {
             done++;
             *length += sum;
         }
