@@ -222,9 +222,13 @@ void sl_frame_draw_lines(const sl_frame *f, int32_t band, int32_t row, int32_t r
     for (int layer = 0; layer < SL_FRAME_LAYERS; layer++) {
         const sl_frame_lines *lines = &f->lines[layer];
         for (int64_t i = 0; i < lines->count; i++) {
-            stroke s = {.half = 0.5 * lines->width, .rgb = lines->rgb};
-            if (lines->span[i].first <= band && lines->span[i].last >= band &&
-                find_line(f, lines->pair[2 * i], lines->pair[2 * i + 1], &s)) {
+            if (lines->span[i].first > band || lines->span[i].last < band) {
+                continue;
+            }
+            stroke s;
+            s.half = 0.5 * lines->width;
+            s.rgb = lines->rgb;
+            if (find_line(f, lines->pair[2 * i], lines->pair[2 * i + 1], &s)) {
                 draw_stroke(f, &s, row, row_end, rgba);
             }
         }
