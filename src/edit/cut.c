@@ -6,6 +6,7 @@
 #include "spectral/spectrum.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { VECTORS = 12, SMOOTH_RINGS = 2 };
@@ -140,19 +141,62 @@ cleanup:
     return status;
 }
 
+/* An edge asked for, as one number; -1 until it is found. */
+typedef struct wanted_edge {
+    int64_t key;
+    int32_t place, halfedge;
+} wanted_edge;
+
+static int64_t edge_key(int32_t v, int32_t w)
+{
+    return v < w ? ((int64_t)v << 32) + w : ((int64_t)w << 32) + v;
+}
+
+static int by_key(const void *a, const void *b)
+{
+    const wanted_edge *x = a, *y = b;
+    return x->key != y->key ? (x->key > y->key) - (x->key < y->key) : x->place - y->place;
+}
+
+/* The first halfedge of each edge asked for: one pass over the mesh, whatever their number. */
+static void find_edges(const sl_mesh *mesh, int32_t count, wanted_edge *wanted)
+{
+    qsort(wanted, (size_t)count, sizeof *wanted, by_key);
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        const int64_t key = edge_key(mesh->input_vertex[mesh->origin[h]], mesh->input_vertex[sl_target(mesh, h)]);
+        int32_t low = 0, high = count;
+        while (low < high) { /* the first with this key */
+            const int32_t middle = low + (high - low) / 2;
+            low = wanted[middle].key < key ? middle + 1 : low;
+            high = wanted[middle].key < key ? high : middle;
+        }
+        for (; low < count && wanted[low].key == key && wanted[low].halfedge < 0; low++) {
+            wanted[low].halfedge = h;
+        }
+    }
+}
+
 sl_status sl_do_cut_edges(sl_session *s, const sl_action *a, const sl_context *context, sl_diag *diag)
 {
     sl_status status = SL_OK;
-    for (int32_t i = 0; i + 1 < a->count; i += 2) {
-        const int32_t h = sl_edit_find_edge(s->mesh, a->item[i], a->item[i + 1]);
-        if (h < 0) {
-            sl_diag_reason(diag, "no edge joins the vertices %d and %d", a->item[i], a->item[i + 1]);
+    const int32_t n = a->count / 2;
+    wanted_edge *wanted = sl_alloc(n, sizeof *wanted);
+    SL_TRY(wanted != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t i = 0; i < n; i++) {
+        wanted[i] = (wanted_edge){edge_key(a->item[2 * i], a->item[2 * i + 1]), i, -1};
+    }
+    find_edges(s->mesh, n, wanted);
+    for (int32_t i = 0; i < n; i++) {
+        if (wanted[i].halfedge < 0) {
+            sl_diag_reason(diag, "no edge joins the vertices %d and %d", a->item[2 * wanted[i].place],
+                           a->item[2 * wanted[i].place + 1]);
             SL_TRY(SL_BAD_INPUT);
         }
-        SL_TRY(sl_change_set_edge(s, h, true));
+        SL_TRY(sl_change_set_edge(s, wanted[i].halfedge, true));
     }
     SL_TRY(finish_cut(s, context, diag));
 cleanup:
+    sl_free(wanted);
     return status;
 }
 

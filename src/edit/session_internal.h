@@ -246,9 +246,6 @@ void sl_edit_fan(const sl_mesh *mesh, int32_t h, int32_t fan[2]);
 /* Halfedge of a side [v, w, facet] as an action names it, leaving v; SL_BAD_INPUT. */
 SL_NODISCARD sl_status sl_edit_take_side(const sl_session *s, const int32_t *name, int32_t *h, sl_diag *diag);
 
-/* Any halfedge between two input vertices, -1 = none. O(nh). */
-int32_t sl_edit_find_edge(const sl_mesh *mesh, int32_t v, int32_t w);
-
 /* --- the actions, a function each; the change is begun, and rolled back by the caller on failure */
 
 typedef sl_status sl_edit_do(sl_session *s, const sl_action *a, const sl_context *context, sl_diag *diag);

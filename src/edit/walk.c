@@ -56,19 +56,6 @@ void sl_edit_fan(const sl_mesh *mesh, int32_t h, int32_t fan[2])
     } while (g >= 0 && g != start);
 }
 
-int32_t sl_edit_find_edge(const sl_mesh *mesh, int32_t v, int32_t w)
-{
-    for (int32_t h = 0; h < mesh->nh; h++) {
-        if (mesh->input_vertex[mesh->origin[h]] == v && mesh->input_vertex[sl_target(mesh, h)] == w) {
-            return h;
-        }
-        if (mesh->input_vertex[mesh->origin[h]] == w && mesh->input_vertex[sl_target(mesh, h)] == v) {
-            return h;
-        }
-    }
-    return -1;
-}
-
 int32_t sl_session_find_corner(const sl_session *session, int32_t vertex, int32_t facet)
 {
     const sl_mesh *mesh = session->mesh;

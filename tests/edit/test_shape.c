@@ -333,6 +333,66 @@ static void a_drag_ends_where_the_plain_action_does(void **state)
     sl_session_free(plain);
 }
 
+static bool never(void *user, const char *stage, double fraction)
+{
+    (void)stage;
+    (void)fraction;
+    ++*(int32_t *)user;
+    return false;
+}
+
+static void a_cancelled_action_leaves_no_trace(void **state)
+{
+    (void)state;
+    sheet t;
+    sheet_make(&t);
+    sl_session *s = open_polygons(&t.polygons, "{\"do\":\"open\"}", NULL);
+    int32_t asked = 0;
+    const sl_context context = {NULL, never, &asked};
+    const uint64_t before = sl_session_hash(s);
+    sl_action a = sl_action_default(SL_ACTION_ANGLE);
+    assert_int_equal(sl_action_set_items(&a, 2, (const int32_t[]){0, 0}), SL_OK);
+    a.number = 70.0;
+    assert_int_equal(sl_session_apply(s, &a, &context, NULL), SL_CANCELLED);
+    assert_true(asked > 0 && sl_session_hash(s) == before);
+    assert_int_equal(sl_session_lines(s), 1);
+    assert_int_equal(sl_session_apply(s, &a, NULL, NULL), SL_OK);
+    sl_action_clear(&a);
+    sl_session_free(s);
+}
+
+static void the_number_of_workers_changes_no_byte(void **state)
+{
+    (void)state;
+    uint64_t hash[3];
+    static const int32_t workers[3] = {1, 2, 5};
+    for (int k = 0; k < 3; k++) {
+        sl_generated *hand = NULL;
+        sl_polygons polygons;
+        sl_thread_pool *pool = NULL;
+        assert_int_equal(sl_generator_find("hand")->make(5, 0, &hand), SL_OK);
+        sl_generated_polygons(hand, &polygons);
+        assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
+        const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+        sl_session *s = NULL;
+        const sl_atlas_def def = small_def();
+        sl_action open = sl_action_default(SL_ACTION_OPEN);
+        assert_int_equal(sl_session_create(&polygons, NULL, &open, &def, &context, &s, NULL), SL_OK);
+        test_rng rng = test_rng_seed(0x77);
+        for (int i = 0; i < 25; i++) {
+            sl_action a = edit_random_action(s, &rng);
+            const sl_status status = sl_session_apply(s, &a, &context, NULL);
+            assert_true(status == SL_OK || status == SL_BAD_INPUT || status == SL_INFEASIBLE);
+            sl_action_clear(&a);
+        }
+        hash[k] = sl_session_hash(s);
+        sl_session_free(s);
+        sl_thread_pool_free(pool);
+        sl_generated_free(hand);
+    }
+    assert_true(hash[0] == hash[1] && hash[0] == hash[2]);
+}
+
 /* A facet of a copy, and of what it shows; how many copies there are. */
 static int32_t find_copy(const sl_session *s, int32_t *copy, int32_t *shown)
 {
@@ -429,6 +489,8 @@ int main(void)
         cmocka_unit_test(red_facets_on_the_page_are_those_of_all_pairs),
         cmocka_unit_test(what_overlaps_is_saved_only_when_that_is_allowed),
         cmocka_unit_test(a_drag_ends_where_the_plain_action_does),
+        cmocka_unit_test(a_cancelled_action_leaves_no_trace),
+        cmocka_unit_test(the_number_of_workers_changes_no_byte),
         cmocka_unit_test(copies_follow_part_and_are_made_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
