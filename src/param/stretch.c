@@ -1,4 +1,4 @@
-#include "param/stretch_internal.h"
+#include "param/stretch_solver_internal.h"
 
 #include "base/memory.h"
 #include "geom/predicates.h"
@@ -7,47 +7,17 @@
 #include <math.h>
 #include <string.h>
 
-static const double STEP_SHARE = 0.9; /* of the step to the first flip */
-static const double ARMIJO = 1e-4;
-static const double NEGLIGIBLE = 1e-2;    /* of the decrease asked for */
 static const double LARGE_SCALE = 0x1p40; /* what is left of the energy at this scale is its quadratic part */
-static const double LONGER =
-    1.15; /* steps are doubled where the energy along them looks least beyond so many lengths */
-static const double PIN_GROWTH = 1.01; /* of the energy, when pins go the last bit of their way */
-static const int MAX_HALVINGS = 40;    /* of a step: 1e-12 of the first trial */
-static const int MAX_DOUBLINGS = 10;   /* of a full step */
-
-/* Far from the minimum (4 is isometric) a plain Newton step is stopped short by a few triangles that would flip; the
- * softened one is not. The two take turns by what the last step gained. */
-static const double FAR_ENERGY = 100.0;
-static const double SOFT_CAP = 1.0; /* bound on |ln s|: singular values within 0.37 and 2.7 */
-static const double SOFT_GAIN = 0.03, PLAIN_GAIN = 0.05;
+static const double PIN_GROWTH = 1.01;    /* of the energy, when pins go the last bit of their way */
 
 enum { VERTEX_ARRAYS = 6 };
-
-struct sl_stretch {
-    const sl_patch *patch;
-    sl_stretch_def def;
-    sl_stretch_info info;
-    sl_stretch_store own, *store; /* the workspace's, or its own */
-    sl_stretch_freedom freedom;
-    double *uv, *trial, *spare, *gradient, *force, *direction; /* 2 nv each, in the store's block */
-    int32_t nb;
-    int32_t *border; /* nb vertex pairs; NULL unless simple_border */
-    double energy;
-    bool softened;    /* the next step */
-    double soft_gain; /* of the last softened step: share of the energy */
-    bool ready;       /* the store's system is this patch's */
-    bool done;
-};
 
 sl_stretch_def sl_stretch_default(void)
 {
     return (sl_stretch_def){.w = 0.0, .max_iterations = 60, .relative_decrease = 1e-4, .hopeless_after = 15};
 }
 
-/* With the springs of the pins. */
-static sl_stretch_sums measure(const sl_stretch *s, const double *uv)
+sl_stretch_sums sl_stretch_measure_map(const sl_stretch *s, const double *uv)
 {
     const sl_stretch_rest *rest = &s->store->rest;
     sl_stretch_sums sums = sl_stretch_measure(rest, s->patch->tri, s->def.w, uv);
@@ -55,7 +25,7 @@ static sl_stretch_sums measure(const sl_stretch *s, const double *uv)
     return sums;
 }
 
-static bool all_positive(const sl_patch *patch, const double *uv)
+bool sl_stretch_all_positive(const sl_patch *patch, const double *uv)
 {
     for (int32_t t = 0; t < patch->nt; t++) {
         const int32_t *v = &patch->tri[3 * t];
@@ -94,8 +64,7 @@ sl_status sl_stretch_list_border(const sl_patch *patch, int32_t *nb, int32_t **b
     return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 }
 
-/* *simple = the border does not meet itself under uv (or nobody asked). */
-static sl_status border_is_simple(const sl_stretch *s, const double *uv, bool *simple)
+sl_status sl_stretch_border_is_simple(const sl_stretch *s, const double *uv, bool *simple)
 {
     sl_certificate certificate = {0};
     *simple = true;
@@ -128,8 +97,7 @@ static double stretch_of(const sl_stretch *s, const double *uv, sl_stretch_sums 
     return sums.energy - sl_stretch_pull_energy(&s->def, s->store->rest.total, uv);
 }
 
-/* What is known of the map in s->uv. */
-static void take_stock(sl_stretch *s, sl_stretch_sums sums)
+void sl_stretch_take_stock(sl_stretch *s, sl_stretch_sums sums)
 {
     s->info.energy_after = stretch_of(s, s->uv, sums);
     s->info.l2 = sums.l2;
@@ -139,16 +107,16 @@ static void take_stock(sl_stretch *s, sl_stretch_sums sums)
 static sl_status start(sl_stretch *s, const double *uv)
 {
     const int64_t count = 2 * (int64_t)s->patch->nv;
-    if (!sl_stretch_all_finite(count, uv) || !all_positive(s->patch, uv)) {
+    if (!sl_stretch_all_finite(count, uv) || !sl_stretch_all_positive(s->patch, uv)) {
         return SL_BAD_INPUT;
     }
     memcpy(s->uv, uv, (size_t)count * sizeof *uv);
-    sl_stretch_sums sums = measure(s, s->uv);
+    sl_stretch_sums sums = sl_stretch_measure_map(s, s->uv);
     if (!isfinite(sums.energy)) {
         return SL_BAD_INPUT;
     }
     bool simple;
-    const sl_status status = border_is_simple(s, s->uv, &simple);
+    const sl_status status = sl_stretch_border_is_simple(s, s->uv, &simple);
     if (status != SL_OK || !simple) {
         return status != SL_OK ? status : SL_BAD_INPUT;
     }
@@ -161,11 +129,11 @@ static sl_status start(sl_stretch *s, const double *uv)
         for (int64_t i = 0; i < count; i++) {
             s->uv[i] *= scale;
         }
-        sums = measure(s, s->uv);
+        sums = sl_stretch_measure_map(s, s->uv);
     }
     s->energy = sums.energy;
-    take_stock(s, sums);
-    s->softened = s->info.energy_after > FAR_ENERGY;
+    sl_stretch_take_stock(s, sums);
+    s->softened = s->info.energy_after > SL_STRETCH_FAR_ENERGY;
     s->soft_gain = 1.0;
     return SL_OK;
 }
@@ -217,155 +185,6 @@ cleanup:
     return status;
 }
 
-/* trial = uv + length direction, accepted if flip-free, its border simple and its energy low enough. */
-static sl_status try_length(sl_stretch *s, double length, double slope, bool *accepted, sl_stretch_sums *sums)
-{
-    *accepted = false;
-    for (int64_t i = 0; i < 2 * (int64_t)s->patch->nv; i++) {
-        s->trial[i] = s->uv[i] + length * s->direction[i];
-    }
-    *sums = measure(s, s->trial);
-    if (!(sums->energy <= s->energy + ARMIJO * length * slope) || (!sums->sure && !all_positive(s->patch, s->trial))) {
-        return SL_OK;
-    }
-    return border_is_simple(s, s->trial, accepted);
-}
-
-static void swap(double **a, double **b)
-{
-    double *const old = *a;
-    *a = *b;
-    *b = old;
-}
-
-/* After an accepted full step: longer ones where the parabola through what is known has its least value well beyond it.
- * The best map so far is kept in spare meanwhile, and ends in trial. */
-static sl_status lengthen(sl_stretch *s, double slope, double bound, sl_stretch_sums *sums)
-{
-    const double bend = sums->energy - s->energy - slope; /* E(t) = E + slope t + bend t^2 */
-    sl_status status = SL_OK;
-    double length = 1.0;
-    bool better = -slope > LONGER * 2.0 * bend;
-    for (int i = 0; i < MAX_DOUBLINGS && better && 2.0 * length <= bound && status == SL_OK; i++) {
-        sl_stretch_sums longer;
-        swap(&s->trial, &s->spare);
-        status = try_length(s, 2.0 * length, slope, &better, &longer);
-        better = status == SL_OK && better && longer.energy < sums->energy;
-        if (better) {
-            length *= 2.0;
-            *sums = longer;
-        } else {
-            swap(&s->trial, &s->spare);
-        }
-    }
-    return status;
-}
-
-/* Backtracks from 0.9 of the flip-free step; where a full step did well, tries longer ones (a projected Hessian is too
- * stiff where the energy is not convex). *moved = false when no length will do; else trial and *sums hold the result.
- */
-static sl_status line_search(sl_stretch *s, double slope, bool *moved, sl_stretch_sums *sums)
-{
-    const double bound = STEP_SHARE * sl_stretch_step_bound(&s->store->rest, s->patch->tri, s->uv, s->direction);
-    double length = fmin(1.0, bound);
-    *moved = false;
-    for (int i = 0; i < MAX_HALVINGS && !*moved; i++) {
-        const sl_status status = try_length(s, length, slope, moved, sums);
-        if (status != SL_OK) {
-            return status;
-        }
-        length *= *moved ? 1.0 : 0.5;
-    }
-    return *moved && length == 1.0 ? lengthen(s, slope, bound, sums) : SL_OK;
-}
-
-static double dot(int64_t count, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int64_t i = 0; i < count; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-/* A step along the projected Newton direction, softened or not. *moved = false when there is none to take. */
-static sl_status move(sl_stretch *s, bool softened, bool *moved, sl_stretch_sums *sums)
-{
-    const int64_t count = 2 * (int64_t)s->patch->nv;
-    *moved = false;
-    sl_stretch_system *system = &s->store->system;
-    sl_stretch_assemble(s->patch, &s->store->rest, &s->freedom, s->def.w, softened ? SOFT_CAP : INFINITY, s->uv, system,
-                        s->gradient, s->force);
-    sl_stretch_pull_assemble(&s->def, s->store->rest.total, &s->freedom, s->uv, system, s->gradient, s->force);
-    const sl_status status = sl_stretch_direction(&s->freedom, system, s->force, s->direction);
-    if (status != SL_OK) {
-        return status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
-    }
-    const double slope = dot(count, s->gradient, s->direction);
-    if (!sl_stretch_all_finite(count, s->direction) || !(slope < 0.0)) {
-        s->info.converged = slope == 0.0;
-        return SL_OK;
-    }
-    if (!softened && -slope < NEGLIGIBLE * s->def.relative_decrease * s->energy) {
-        s->info.converged = true; /* not even the linear model promises enough */
-        return SL_OK;
-    }
-    return line_search(s, slope, moved, sums);
-}
-
-/* After a step that lowered the energy by the share `gain`. */
-static bool is_hopeless(const sl_stretch *s, double gain)
-{
-    const sl_stretch_def *def = &s->def;
-    if (def->most_l2 > 0.0 && s->info.l2 > def->most_l2) {
-        return true;
-    }
-    if (def->hopeless_l2 > 0.0 && s->info.iterations >= def->hopeless_after && s->info.l2 > def->hopeless_l2) {
-        return true;
-    }
-    return def->hopeless_gain > 0.0 && def->target_l2 > 0.0 &&
-           s->info.l2 * (1.0 - def->hopeless_gain * gain) > def->target_l2;
-}
-
-/* Books an accepted step and says whether to go on. */
-static void accept(sl_stretch *s, bool softened, sl_stretch_sums sums)
-{
-    const double gain = (s->energy - sums.energy) / s->energy;
-    swap(&s->uv, &s->trial);
-    s->energy = sums.energy;
-    take_stock(s, sums);
-    const bool far = s->info.energy_after > FAR_ENERGY;
-    s->softened = far && (softened ? gain >= SOFT_GAIN : gain < PLAIN_GAIN);
-    s->info.iterations++;
-    if (softened) {
-        s->soft_gain = gain;
-    }
-    /* Far from the minimum a small gain says something only if neither kind of step gained more. */
-    const double recent = softened ? 1.0 : far ? fmax(gain, s->soft_gain) : gain;
-    const bool reached = s->def.target_l2 > 0.0 && sums.l2 <= s->def.target_l2 && s->def.pin_count == 0;
-    s->info.converged = reached || recent < s->def.relative_decrease;
-    s->info.hopeless = !s->info.converged && is_hopeless(s, recent);
-    s->done = s->info.converged || s->info.hopeless;
-}
-
-static sl_status newton_step(sl_stretch *s)
-{
-    bool moved = false, softened = s->softened;
-    sl_stretch_sums sums = {0};
-    sl_status status = move(s, softened, &moved, &sums);
-    if (status == SL_OK && !moved && softened) { /* the softened direction may lead uphill */
-        softened = false;
-        s->soft_gain = 0.0;
-        status = move(s, false, &moved, &sums);
-    }
-    if (status == SL_OK && moved) {
-        accept(s, softened, sums);
-    } else {
-        s->done = true;
-    }
-    return status;
-}
-
 /* Pins that the springs have brought next to their places go there, if nothing flips. */
 static sl_status set_pins(sl_stretch *s)
 {
@@ -374,15 +193,16 @@ static sl_status set_pins(sl_stretch *s)
     for (int32_t i = 0; i < s->def.pin_count; i++) {
         memcpy(&s->trial[2 * (int64_t)s->def.pin[i].vertex], s->def.pin[i].uv, 2 * sizeof *s->trial);
     }
-    const sl_stretch_sums sums = measure(s, s->trial);
-    if (!isfinite(sums.energy) || sums.energy > PIN_GROWTH * s->energy || !all_positive(s->patch, s->trial)) {
+    const sl_stretch_sums sums = sl_stretch_measure_map(s, s->trial);
+    if (!isfinite(sums.energy) || sums.energy > PIN_GROWTH * s->energy ||
+        !sl_stretch_all_positive(s->patch, s->trial)) {
         return SL_OK;
     }
-    const sl_status status = border_is_simple(s, s->trial, &simple);
+    const sl_status status = sl_stretch_border_is_simple(s, s->trial, &simple);
     if (status == SL_OK && simple) {
-        swap(&s->uv, &s->trial);
+        sl_stretch_swap(&s->uv, &s->trial);
         s->energy = sums.energy;
-        take_stock(s, sums);
+        sl_stretch_take_stock(s, sums);
     }
     return status;
 }
@@ -397,7 +217,7 @@ sl_status sl_stretch_step(sl_stretch *s, int32_t n, const sl_context *context)
             s->ready = status == SL_OK;
         }
         if (status == SL_OK) {
-            status = newton_step(s);
+            status = sl_stretch_iterate(s);
         }
         if (status == SL_OK && s->def.pin_count > 0 && (s->done || s->info.iterations == s->def.max_iterations)) {
             status = set_pins(s);

@@ -216,6 +216,14 @@ static void it_stops_at_the_target_or_when_there_is_no_hope(void **state)
     assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, &info), SL_OK);
     assert_true(info.hopeless && !info.converged && info.iterations == 2);
 
+    def = sl_stretch_default(); /* from the end on a weight that buys angles for stretch */
+    memcpy(uv, start, uv_size(patch));
+    assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, NULL), SL_OK);
+    def.w = -4.0;
+    def.most_l2 = 1.02 * full.l2;
+    assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, &info), SL_OK);
+    assert_true(info.hopeless && !info.converged && info.l2 > def.most_l2 && info.iterations < 5);
+
     def = sl_stretch_default();
     def.max_iterations = 3;
     memcpy(uv, start, uv_size(patch));
