@@ -180,7 +180,7 @@ static void write_frames(sl_writer *w, const abf_trace *t)
     for (int32_t k = 0; k < t->count; k++) {
         name_frame(t, k, name);
         sl_writer_format(w, "<section class=\"it\" data-name=\"%s\"><div><h3>%s</h3>\n", name, name);
-        if (k < pictures || k + 1 == t->count) {
+        if (!t->frame[k].dropped && (k < pictures || k + 1 == t->count)) {
             sl_writer_text(w, "<figure>\n");
             abf_svg_chart(w, t, &t->frame[k]);
             sl_writer_text(w, "</figure>\n");

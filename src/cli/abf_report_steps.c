@@ -168,19 +168,14 @@ static void value_of_matrices(const abf_trace *t, const abf_frame *f, int line, 
 static void value_of_step(const abf_trace *t, int32_t k, int line, char *text, size_t size)
 {
     const abf_frame *f = &t->frame[k];
-    const int64_t nc = 3 * (int64_t)t->pick->patch->nt;
-    double largest = 0.0;
     if (f->info.iterations == 0 || k == 0) {
         snprintf(text, size, "no step yet");
         return;
     }
-    for (int64_t c = 0; c < nc; c++) {
-        largest = fmax(largest, fabs(f->alpha[c] - t->frame[k - 1].alpha[c]));
-    }
     if (line == STEP) {
         snprintf(text, size, "%.6g", f->info.step);
     } else {
-        snprintf(text, size, "largest change of an angle %.4g&deg;", largest * degrees);
+        snprintf(text, size, "largest change of an angle %.4g&deg;", f->change * degrees);
     }
 }
 
@@ -246,6 +241,10 @@ static void list_angles(sl_writer *w, const abf_trace *t, const abf_frame *f)
 void abf_report_steps(sl_writer *w, const abf_trace *t, int32_t k)
 {
     char value[160];
+    if (t->frame[k].dropped) {
+        sl_writer_text(w, "<p class=\"quiet\">A long run on a large chart: this one was not kept.</p>\n");
+        return;
+    }
     sl_writer_text(w, "<div class=\"scroll\"><table><tr><th class=\"l\">what</th><th class=\"l\">value</th>"
                       "<th class=\"l\">formula</th><th class=\"l\">equation</th><th class=\"l\">C function</th>"
                       "</tr>\n");

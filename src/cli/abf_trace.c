@@ -43,6 +43,7 @@ static void frame_clear(abf_frame *frame)
     sl_free(frame->alpha);
     sl_free(frame->residual);
     sl_free(frame->uv);
+    frame->alpha = frame->residual = frame->uv = NULL;
 }
 
 void abf_trace_clear(abf_trace *trace)
@@ -51,6 +52,7 @@ void abf_trace_clear(abf_trace *trace)
         frame_clear(&trace->frame[k]);
     }
     sl_free(trace->frame);
+    sl_reconstruct_free(trace->layout);
     sl_free(trace->measure);
     sl_csc_free(trace->J);
     sl_csc_free(trace->M);
@@ -58,27 +60,45 @@ void abf_trace_clear(abf_trace *trace)
 }
 
 /* The layout of the frame's angles, moved to the pins. That angles cannot be laid out is no error: uv is then NULL. */
-static sl_status lay_out(const abf_trace *trace, abf_frame *frame, const sl_context *context)
+static sl_status lay_out(abf_trace *trace, abf_frame *frame, const sl_context *context)
 {
     const sl_patch *patch = trace->pick->patch;
-    sl_reconstruct *layout = NULL;
     sl_status status = SL_OK;
     frame->uv = sl_alloc(2 * (int64_t)patch->nv, sizeof *frame->uv);
     SL_TRY(frame->uv != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(sl_reconstruct_create(patch, &layout));
-    SL_TRY(sl_reconstruct_solve(layout, frame->alpha, context, frame->uv));
+    if (trace->layout == NULL) {
+        SL_TRY(sl_reconstruct_create(patch, &trace->layout));
+    }
+    SL_TRY(sl_reconstruct_solve(trace->layout, frame->alpha, context, frame->uv));
     SL_TRY(sl_pins_apply(patch, trace->constraints->pins, trace->constraints->pin, frame->uv, NULL));
     const sl_layout_quality quality = sl_layout_judge(patch, frame->alpha, frame->uv);
     frame->flipped = quality.flipped;
     frame->angle_error = quality.angle_error;
 cleanup:
-    sl_reconstruct_free(layout);
     if (status == SL_SINGULAR || status == SL_INFEASIBLE) {
         sl_free(frame->uv);
         frame->uv = NULL;
         status = SL_OK;
     }
     return status;
+}
+
+/* How far the angles went from the frame before; which is then dropped unless it is wanted and there is room. */
+static void leave_last(abf_trace *trace, abf_frame *frame, int64_t doubles)
+{
+    const int64_t bytes = doubles * (int64_t)sizeof(double);
+    if (trace->count > 0) {
+        abf_frame *last = &trace->frame[trace->count - 1];
+        for (int64_t c = 0; c < 3 * (int64_t)trace->pick->patch->nt; c++) {
+            frame->change = fmax(frame->change, fabs(frame->alpha[c] - last->alpha[c]));
+        }
+        if (!trace->keep || trace->bytes + bytes > ABF_KEPT_BYTES) {
+            frame_clear(last);
+            last->dropped = true;
+            trace->bytes -= bytes;
+        }
+    }
+    trace->bytes += bytes;
 }
 
 sl_status abf_trace_add(abf_trace *trace, const sl_abf *solver, const sl_context *context)
@@ -104,6 +124,7 @@ sl_status abf_trace_add(abf_trace *trace, const sl_abf *solver, const sl_context
     sl_abf_eval_g2(&trace->table->view, frame->alpha, frame->residual + patch->nt);
     sl_abf_eval_g3(patch, trace->def.wheel, frame->alpha, frame->residual + patch->nt + trace->sizes.sectors);
     SL_TRY(lay_out(trace, frame, context));
+    leave_last(trace, frame, 3 * (int64_t)patch->nt + rows + 2 * (int64_t)patch->nv);
     trace->count++;
     return SL_OK;
 cleanup:
@@ -228,6 +249,10 @@ static void write_frame(sl_writer *w, const abf_trace *t, const abf_frame *f)
     sl_writer_format(w, "\"converged\":%s,\"stalled\":%s,\"floor\":%s,\"fallbacks\":%d,\"flipped\":%d,",
                      i->converged ? "true" : "false", i->stalled ? "true" : "false", i->floor ? "true" : "false",
                      i->fallbacks, f->flipped);
+    if (f->dropped) {
+        sl_writer_text(w, "\"dropped\":true}");
+        return;
+    }
     write_array(w, "angles", f->alpha, 3 * (int64_t)p->nt);
     sl_writer_text(w, ",");
     write_array(w, "residualG1", f->residual, p->nt);

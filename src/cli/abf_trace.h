@@ -6,6 +6,9 @@
 #include "cli/abf_pick.h"
 #include "param/abf_chart.h"
 #include "param/distortion.h"
+#include "param/reconstruct.h"
+
+#define ABF_KEPT_BYTES ((int64_t)1 << 29)
 
 enum { ABF_MATRIX_TRIANGLES = 12 }; /* charts up to this many triangles are small: their matrices are shown */
 
@@ -19,6 +22,8 @@ typedef struct abf_frame {
     double angle_error; /* largest |angle in uv - alpha| [rad] */
     int32_t solve;      /* 1, 2, ...: homotopy solves again and again, for targets nearer and nearer */
     double aside;       /* how far its targets are from those asked for, at most [rad] */
+    double change;      /* largest |alpha - alpha of the frame before| [rad] */
+    bool dropped;       /* alpha, residual and uv have been freed */
     bool held;          /* no step: what is held in the end, since the last solve came to nothing */
 } abf_frame;
 
@@ -33,9 +38,12 @@ typedef struct abf_trace {
     sl_abf_sizes sizes;
     const double *beta;         /* 3 nt: angles measured on the surface */
     const double *phi, *weight; /* 3 nt: targets and weights of the energy */
+    bool keep; /* somebody wants all frames whole; else the last one is. Runs beyond ABF_KEPT_BYTES drop some all the
+                  same */
     int32_t count;
     abf_frame *frame;
-    int64_t capacity;
+    int64_t capacity, bytes;  /* bytes: of whole frames */
+    sl_reconstruct *layout;   /* one analysis for all */
     sl_csc *J, *M;            /* of the last iteration, on charts that show them, else NULL */
     sl_distortion distortion; /* of the last layout */
     int32_t crossings;        /* of its border with itself: where the chart overlaps */
