@@ -93,6 +93,7 @@ void abf_print_end(const abf_trace *t)
         return;
     }
     printf("layout: flipped %d, L2 %.6f, mean s1/s2 %.6f, max %.4f\n", f->flipped, d->l2, d->angle_mean, d->angle_max);
+    printf("its angles are those of the solver to %.1e rad, at an area ratio of %.3g\n", f->angle_error, f->area_ratio);
     if (t->crossings > 0) {
         printf("the chart overlaps itself: its border crosses itself %d time%s\n", t->crossings,
                t->crossings == 1 ? "" : "s");

@@ -210,7 +210,8 @@ static void value_of(const abf_trace *t, int32_t k, int line, char *text, size_t
         if (f->uv == NULL) {
             snprintf(text, size, "cannot be laid out");
         } else {
-            snprintf(text, size, "%d flipped; angles differ by %.2e rad at most", f->flipped, f->angle_error);
+            snprintf(text, size, "%d flipped; angles differ by %.2e rad at most; area ratio %.3g", f->flipped,
+                     f->angle_error, f->area_ratio);
         }
         break;
     default:

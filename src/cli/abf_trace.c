@@ -74,6 +74,7 @@ static sl_status lay_out(abf_trace *trace, abf_frame *frame, const sl_context *c
     const sl_layout_quality quality = sl_layout_judge(patch, frame->alpha, frame->uv);
     frame->flipped = quality.flipped;
     frame->angle_error = quality.angle_error;
+    frame->area_ratio = quality.area_ratio;
 cleanup:
     if (status == SL_SINGULAR || status == SL_INFEASIBLE) {
         sl_free(frame->uv);
@@ -246,6 +247,8 @@ static void write_frame(sl_writer *w, const abf_trace *t, const abf_frame *f)
     write_number(w, "step", i->step);
     sl_writer_format(w, "\"solve\":%d,\"held\":%s,", f->solve, f->held ? "true" : "false");
     write_number(w, "targetsAside", f->aside);
+    write_number(w, "layoutAngleError", f->angle_error);
+    write_number(w, "layoutAreaRatio", f->area_ratio);
     sl_writer_format(w, "\"converged\":%s,\"stalled\":%s,\"floor\":%s,\"fallbacks\":%d,\"flipped\":%d,",
                      i->converged ? "true" : "false", i->stalled ? "true" : "false", i->floor ? "true" : "false",
                      i->fallbacks, f->flipped);

@@ -20,6 +20,7 @@ typedef struct abf_frame {
     double *uv;         /* nv x 2; NULL: the angles could not be laid out */
     int32_t flipped;    /* triangles of uv */
     double angle_error; /* largest |angle in uv - alpha| [rad] */
+    double area_ratio;  /* largest over smallest of area in uv / area in space */
     int32_t solve;      /* 1, 2, ...: homotopy solves again and again, for targets nearer and nearer */
     double aside;       /* how far its targets are from those asked for, at most [rad] */
     double change;      /* largest |alpha - alpha of the frame before| [rad] */
