@@ -191,6 +191,13 @@ static void the_zipper_goes_back_and_forth(void **state)
              distance(&t, 34, 24) + 0.45 * distance(&t, 24, 14));
     do_line(s, line);
     assert_int_equal(seam_edges(s), 2);
+    do_line(s, "{\"do\":\"undo\"}");
+    snprintf(line, sizeof line, "{\"do\":\"sew\",\"at\":[34,24,22],\"length\":%.4f}",
+             distance(&t, 34, 24) + 0.6 * distance(&t, 24, 14));
+    do_line(s, line);
+    assert_int_equal(seam_edges(s), 1);
+    do_line(s, "{\"do\":\"undo\",\"steps\":1}");
+    do_line(s, "{\"do\":\"sew\",\"at\":[34,24,22],\"to\":24}");
     refuse_line(s, "{\"do\":\"sew\",\"at\":[24,14,13],\"to\":77}", SL_BAD_INPUT);
     refuse_line(s, "{\"do\":\"sew\",\"at\":[34,24,22]}", SL_BAD_INPUT);
     refuse_line(s, "{\"do\":\"unsew\",\"at\":[24,14,13]}", SL_BAD_INPUT);
@@ -240,6 +247,46 @@ static void merging_sews_the_longest_arc(void **state)
     do_line(s, "{\"do\":\"cut-loop\",\"at\":[6,16,6]}");
     refuse_line(s, "{\"do\":\"merge\",\"facets\":[0,8]}", SL_BAD_INPUT); /* no seam in common */
     assert_int_equal(charts(s), 3);
+    sl_session_free(s);
+}
+
+static void arcs_end_where_three_seams_meet(void **state)
+{
+    (void)state;
+    sheet t;
+    sheet_make(&t);
+    sl_session *s = open_polygons(&t.polygons, "{\"do\":\"open\"}", NULL);
+    do_line(s, "{\"do\":\"cut-loop\",\"at\":[4,14,4]}");
+    do_line(s, "{\"do\":\"cut-edges\",\"edges\":[[30,31],[31,32],[32,33],[33,34]]}"); /* a T at 34 */
+    assert_int_equal(charts(s), 3);
+    do_line(s, "{\"do\":\"delete-seam\",\"at\":[14,24,13]}");
+    assert_int_equal(charts(s), 2);
+    assert_int_equal(seam_edges(s), SHEET_Y + 4 - 3);
+    assert_true(is_seam(s, 34, 44) && is_seam(s, 33, 34) && !is_seam(s, 24, 34));
+    int32_t *arc = NULL, count = 0;
+    assert_int_equal(sl_session_arc(s, sl_session_find_side(s, 34, 44, 30), &arc, &count), SL_OK);
+    assert_int_equal(count, SHEET_Y - 3 + 4); /* one line now, round the corner */
+    sl_free(arc);
+    assert_int_equal(sl_session_arc(s, sl_session_find_side(s, 4, 14, 4), &arc, &count), SL_BAD_INPUT);
+    sl_session_free(s);
+}
+
+static void of_two_arcs_the_longer_is_sewn(void **state)
+{
+    (void)state;
+    sheet t;
+    sheet_make(&t);
+    sl_session *s = open_polygons(&t.polygons, "{\"do\":\"open\"}", NULL);
+    do_line(s, "{\"do\":\"cut-loop\",\"at\":[4,14,4]}");
+    /* a piece across the column takes its two halves apart: two edges below it, four above */
+    do_line(s, "{\"do\":\"cut-edges\",\"edges\":[[23,24],[24,25],[25,35],[35,34],[34,33],[33,23]]}");
+    const int32_t before = seam_edges(s);
+    assert_int_equal(charts(s), 4);
+    do_line(s, "{\"do\":\"merge\",\"facets\":[0,8]}");
+    assert_int_equal(charts(s), 3);
+    assert_int_equal(seam_edges(s), before - 4);
+    assert_true(is_seam(s, 4, 14) && !is_seam(s, 34, 44));
+    assert_null(edit_broken(s));
     sl_session_free(s);
 }
 
@@ -315,6 +362,8 @@ int main(void)
         cmocka_unit_test(the_zipper_goes_back_and_forth),
         cmocka_unit_test(what_would_be_no_disk_is_refused_with_the_reason),
         cmocka_unit_test(merging_sews_the_longest_arc),
+        cmocka_unit_test(arcs_end_where_three_seams_meet),
+        cmocka_unit_test(of_two_arcs_the_longer_is_sewn),
         cmocka_unit_test(a_nodal_line_cuts_a_chart_in_two_disks),
         cmocka_unit_test(undo_redo_and_checkpoints_give_the_bytes_back),
     };

@@ -74,6 +74,34 @@ static void dropping_a_constraint_gives_the_free_shape_back(void **state)
     sl_session_free(s);
 }
 
+/* The new layout lies as near to the old one as a rotation and a translation can bring it. */
+static void a_chart_solved_again_stays_where_it_was(void **state)
+{
+    (void)state;
+    sheet t;
+    sheet_make(&t);
+    sl_session *s = open_polygons(&t.polygons, "{\"do\":\"open\"}", NULL);
+    do_line(s, "{\"do\":\"rotate\",\"facet\":0,\"degrees\":77}");
+    double *before = sl_copy(sl_session_corner_uv(s), 4 * SHEET_F, 2 * sizeof(double));
+    do_line(s, "{\"do\":\"angle\",\"corner\":[0,0],\"degrees\":60}");
+    const double *after = sl_session_corner_uv(s);
+    double p[2] = {0}, q[2] = {0}, dot = 0.0, cross = 0.0;
+    for (int32_t i = 0; i < 8 * SHEET_F; i++) {
+        p[i % 2] += before[i] / (4 * SHEET_F);
+        q[i % 2] += after[i] / (4 * SHEET_F);
+    }
+    assert_true(test_near(p[0], q[0], 1e-12) && test_near(p[1], q[1], 1e-12));
+    for (int32_t c = 0; c < 4 * SHEET_F; c++) {
+        const double a[2] = {before[2 * c] - p[0], before[2 * c + 1] - p[1]};
+        const double b[2] = {after[2 * c] - q[0], after[2 * c + 1] - q[1]};
+        dot += a[0] * b[0] + a[1] * b[1];
+        cross += a[0] * b[1] - a[1] * b[0];
+    }
+    assert_true(dot > 0.0 && fabs(cross) < 1e-12 * dot);
+    sl_free(before);
+    sl_session_free(s);
+}
+
 /* Largest distance of the vertices from the chord, over its length. path: vertex, facet, ... */
 static double bend(const sl_session *s, const int32_t *path, int32_t n)
 {
@@ -146,10 +174,12 @@ static void constraints_live_through_sewing_where_they_can(void **state)
     do_line(s, "{\"do\":\"angle\",\"corner\":[0,0],\"degrees\":75}");      /* far from the seam */
     do_line(s, "{\"do\":\"angle\",\"corner\":[34,30],\"degrees\":170}");   /* on it */
     do_line(s, "{\"do\":\"straighten-border\",\"ends\":[[74,58],[4,4]]}"); /* the seam itself, from one side */
+    do_line(s, "{\"do\":\"angle\",\"corner\":[4,4],\"degrees\":80}"); /* at its end: a border vertex afterwards, too */
     do_line(s, "{\"do\":\"delete-seam\",\"at\":[4,14,4]}");
     assert_int_equal(sl_session_constraints(s), 2);
-    assert_int_equal(sl_session_notes(s), 1);
+    assert_int_equal(sl_session_notes(s), 2);
     assert_non_null(strstr(sl_session_note(s, 0), "constraint 2"));
+    assert_non_null(strstr(sl_session_note(s, 1), "constraint 4"));
     const double *a = uv_at(s, 0, 0);
     assert_true(test_near(wedge(a, uv_at(s, 1, 0), uv_at(s, 10, 0)), 75.0, 1e-6));
     const int32_t line[] = {4, 4, 14, 4, 24, 13, 34, 22, 44, 31, 54, 40, 64, 49, 74, 58};
@@ -446,9 +476,19 @@ static void copies_follow_part_and_are_made_again(void **state)
     assert_int_equal(atlas->check.unlike, 0);
     assert_int_equal(atlas->segmentation->sharing.copies, copies);
     sl_atlas_free(atlas);
-    /* off: UVs of its own, not mirrored */
+    /* off: UVs of its own, not mirrored, in the same box */
+    sl_session_chart turned[2];
+    const int32_t slot = sl_session_face_chart(s)[copy];
+    snprintf(line, sizeof line, "{\"do\":\"rotate\",\"facet\":%d,\"degrees\":21}", copy);
+    do_line(s, line);
+    sl_session_chart_info(s, slot, &turned[0]);
     snprintf(line, sizeof line, "{\"do\":\"symmetry\",\"facet\":%d,\"on\":false}", copy);
     do_line(s, line);
+    sl_session_chart_info(s, slot, &turned[1]);
+    for (int k = 0; k < 2; k++) {
+        assert_true(test_near(turned[0].low[k], turned[1].low[k], 1e-12));
+        assert_true(test_near(turned[0].high[k], turned[1].high[k], 1e-12));
+    }
     const int32_t alone = copy, first = shown;
     assert_int_equal(find_copy(s, &copy, &shown), copies - 1);
     assert_null(edit_broken(s));
@@ -481,6 +521,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_angle_at_the_border_is_what_was_asked_for),
         cmocka_unit_test(dropping_a_constraint_gives_the_free_shape_back),
+        cmocka_unit_test(a_chart_solved_again_stays_where_it_was),
         cmocka_unit_test(straight_paths_are_straight_and_cross_at_right_angles),
         cmocka_unit_test(four_corners_make_a_rectangle),
         cmocka_unit_test(constraints_live_through_sewing_where_they_can),
