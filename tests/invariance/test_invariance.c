@@ -265,7 +265,7 @@ static sl_atlas_def small_pages(void)
 static void a_scale_that_is_a_power_of_two_gives_the_same_bytes(void **state)
 {
     (void)state;
-    static const char *const names[] = {"character", "bracket", "football", "slab", "chain"};
+    static const char *const names[] = {"bracket", "slab", "character"};
     for (size_t k = 0; k < SL_COUNTOF(names); k++) {
         sl_polygons p;
         sl_generated *made = generate(names[k], &p);
@@ -290,7 +290,7 @@ static void a_scale_that_is_a_power_of_two_gives_the_same_bytes(void **state)
 static void charts_are_the_same_where_eigenvalues_are_apart(void **state)
 {
     (void)state;
-    static const char *const names[] = {"bracket", "mug", "pretzel"};
+    static const char *const names[] = {"bracket", "mug"};
     test_rng rng = test_rng_seed(0x1a7);
     for (size_t k = 0; k < SL_COUNTOF(names); k++) {
         sl_polygons p;
@@ -319,7 +319,7 @@ static void charts_are_the_same_where_eigenvalues_are_apart(void **state)
 static void atlases_are_as_good_where_eigenvalues_coincide(void **state)
 {
     (void)state;
-    static const char *const names[] = {"slab", "beam", "football"};
+    static const char *const names[] = {"slab", "beam", "plate"};
     test_rng rng = test_rng_seed(0x1a8);
     for (size_t k = 0; k < SL_COUNTOF(names); k++) {
         sl_polygons p;
