@@ -207,7 +207,8 @@ static inline sl_patch *chart_limbs(int32_t rings, int32_t limbs, int32_t layers
     memcpy(xyz, base->xyz, 3 * (size_t)nv * sizeof *xyz);
     memcpy(tri, base->tri, 3 * (size_t)nt * sizeof *tri);
     for (int32_t i = 0; i < limbs; i++) {
-        extrude_triangle(test_index(&rng, base->nt), 1 + test_index(&rng, layers), 0.5 / rings, &nv, xyz, &nt, tri);
+        const int32_t length = 1 + test_index(&rng, layers), t = test_index(&rng, base->nt);
+        extrude_triangle(t, length, 0.5 / rings, &nv, xyz, &nt, tri);
     }
     sl_patch *patch = chart_make(nv, xyz, nt, tri);
     assert_true(sl_patch_is_disk(patch));
