@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "base/memory.h"
 #include "cli/abf_trace.h"
+#include "cli/render_animate.h"
 #include "geom/vec3.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 static const cli_verb verb = {
     .name = "abf",
     .usage = "seamlab abf MESH [-o OUT] [--step] [--iterations N] [--trace FILE.json] [--report FILE.html]\n"
-             "            [constraints]",
+             "            [--animate FILE.png] [constraints]",
     .summary = "Flattens one chart by ABF++ and shows every Newton iteration: energy, gradient, residuals of the\n"
                "constraints, sizes of the matrices, and the matrices of a small chart (reports/design/abf-by-hand.md\n"
                "follows one with pencil and paper). Constraints (paper, Sec. 4.2) name vertices by input number,\n"
@@ -42,11 +43,11 @@ typedef struct abf_options {
     bool step;
     int32_t energy, wheel, newton;
     int32_t iterations; /* -1 = not said */
-    const char *trace, *report, *output;
+    const char *trace, *report, *output, *animation;
     sl_abf_def def;
 } abf_options;
 
-enum { OWN_OPTIONS = 17, MOST_ITERATIONS = 1000 };
+enum { OWN_OPTIONS = 18, MOST_ITERATIONS = 1000 };
 
 static const char end_of_input[] = {4, 0}; /* Ctrl-D, as it comes raw and as it comes from a line begun before */
 
@@ -58,6 +59,7 @@ static void option_table(abf_options *o, cli_option *table)
         {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY: the mesh with this chart's UVs"},
         {"trace", 0, CLI_TEXT, &o->trace, 0, 0, NULL, "FILE", "JSON of all iterations: angles, residuals, layouts"},
         {"report", 0, CLI_TEXT, &o->report, 0, 0, NULL, "FILE", "HTML: each layout, convergence, the computation"},
+        {"animate", 0, CLI_TEXT, &o->animation, 0, 0, NULL, "FILE", "animated PNG: each layout, on the model and flat"},
         {"angle", 0, CLI_LIST, &o->asked.angle, 0, 0, NULL, "V=DEG", "angle of the chart at border vertex V"},
         {"straight", 0, CLI_LIST, &o->asked.straight, 0, 0, NULL, "V1,V2,...",
          "a path of edges becomes straight; two vertices: the shortest path"},
@@ -168,6 +170,9 @@ static sl_status deliver(abf_options *o, const abf_trace *trace, sl_diag *diag)
     }
     if (o->report != NULL) {
         SL_TRY(abf_report_write(trace, o->report, diag));
+    }
+    if (o->animation != NULL) {
+        SL_TRY(cli_animate_solve(trace, o->animation, &o->run.context, diag));
     }
     if (o->output != NULL) {
         SL_TRY(abf_mesh_write(trace, o->output, diag));
@@ -280,7 +285,7 @@ static sl_status solve(abf_options *o, const abf_pick *pick, const abf_constrain
     SL_TRY(sl_constraints_compile(patch, constraints->count, constraints->item, pick->name, &table, diag));
     SL_TRY(check_pins(patch, constraints, diag));
     o->def.sectors = &table.view;
-    trace.keep = o->run.json || o->trace != NULL || o->report != NULL;
+    trace.keep = o->run.json || o->trace != NULL || o->report != NULL || o->animation != NULL;
     trace.def = o->def;
     trace.phi = phi;
     trace.weight = phi + 3 * (int64_t)patch->nt;
@@ -328,6 +333,10 @@ int cli_abf(int argc, char **argv)
     }
     if (o.output != NULL && !sl_meshfile_can_hold_uv(o.output)) {
         fprintf(stderr, "seamlab abf: the output's format cannot hold UVs; use .obj or .ply\n");
+        return CLI_USAGE;
+    }
+    if (o.animation != NULL && strcmp(o.animation, "-") != 0 && !cli_has_extension(o.animation, ".png")) {
+        fprintf(stderr, "seamlab abf: --animate writes an animated .png, not %s\n", o.animation);
         return CLI_USAGE;
     }
     o.def.max_iterations = o.iterations >= 0 ? o.iterations : o.def.max_iterations;

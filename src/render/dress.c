@@ -14,8 +14,13 @@ static const double coarse_crease = 40.0, dense_crease = 75.0; /* degrees */
 static const double coarse_facets = 4000.0, dense_facets = 60000.0;
 static const double same_uv = 1e-9; /* closer UVs are one */
 
+/* Corners without UVs are alike: what has none is not all seams. */
 static bool uv_equal(const double *a, const double *b)
 {
+    const bool none_a = isnan(a[0]) || isnan(a[1]), none_b = isnan(b[0]) || isnan(b[1]);
+    if (none_a || none_b) {
+        return none_a && none_b;
+    }
     return fabs(a[0] - b[0]) <= same_uv && fabs(a[1] - b[1]) <= same_uv;
 }
 

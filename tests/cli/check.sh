@@ -114,6 +114,9 @@ expect 3 "$seamlab" render points.obj -o no.png
 expect 0 "$seamlab" segment $mesh --animate splits.png --quiet
 grep -qa acTL splits.png && grep -qa fdAT splits.png || complain "splits.png is no animation"
 expect 2 "$seamlab" segment $mesh --animate splits.gif
+expect 0 "$seamlab" abf $mesh --animate solve.png --quiet
+grep -qa acTL solve.png && grep -qa fdAT solve.png || complain "solve.png is no animation"
+expect 2 "$seamlab" abf $mesh --animate solve.gif
 expect 0 "$seamlab" render $mesh -o seen.png --view 3d --size 90x90 --show visibility --quiet
 expect 0 "$seamlab" render $mesh -o cost.png --view 3d --size 90x90 --show seams,seamcost --quiet
 cmp -s seen.png cost.png && complain "visibility and seamcost show the same"

@@ -253,6 +253,17 @@ static void seams_are_where_charts_or_uvs_change_or_an_edge_is_cut(void **state)
         }
         sl_mesh_sew_edge(t.mesh, cut);
     }
+    /* A chart without UVs has an outline and nothing else. */
+    sl_scene scene = t.scene;
+    scene.chart = NULL;
+    scene.corner_uv = t.uv;
+    for (int32_t h = 0; h < t.mesh->nh; h++) {
+        t.uv[2 * h] = t.chart[t.mesh->face[h]] == 0 ? (double)NAN : t.uv[2 * h];
+    }
+    for (int32_t h = 0; h < t.mesh->nh; h++) {
+        const int32_t other = sl_opposite(t.mesh, h);
+        assert_int_equal(sl_is_seam(&scene, h), t.chart[t.mesh->face[h]] != t.chart[t.mesh->face[other]]);
+    }
     clear_torus(&t);
 }
 
