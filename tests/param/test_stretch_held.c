@@ -281,6 +281,74 @@ static void lines_that_cannot_be_kept_are_refused(void **state)
     sl_patch_free(s.patch);
 }
 
+/* The matrix over all coordinates or over unknowns, dense and symmetric; its size. */
+static int32_t dense_matrix(const sheet *s, const sl_stretch_def *def, double **out, sl_stretch_freedom *freedom)
+{
+    sl_stretch_rest rest = {0};
+    sl_stretch_system system;
+    double *gradient = malloc(sizeof s->uv), *force = malloc(sizeof s->uv);
+    assert_int_equal(sl_stretch_rest_init(s->patch, &rest), SL_OK);
+    assert_int_equal(sl_stretch_freedom_init(s->patch, def, s->uv, freedom), SL_OK);
+    assert_int_equal(sl_stretch_system_init(s->patch, freedom, &system), SL_OK);
+    sl_stretch_assemble(s->patch, &rest, freedom, 0.2, INFINITY, s->uv, &system, gradient, force);
+    const int32_t n = system.H->ncols;
+    *out = calloc((size_t)n * (size_t)n, sizeof **out);
+    for (int32_t j = 0; j < n; j++) {
+        for (int64_t p = system.H->colptr[j]; p < system.H->colptr[j + 1]; p++) {
+            (*out)[system.H->row[p] * n + j] = (*out)[j * n + system.H->row[p]] = system.H->val[p];
+        }
+    }
+    sl_stretch_system_clear(&system);
+    sl_stretch_rest_clear(&rest);
+    free(gradient);
+    free(force);
+    return n;
+}
+
+/* With B the way unknowns move vertices: B' H B, entry by entry. */
+static void the_matrix_of_what_is_left_is_the_projected_one(void **state)
+{
+    (void)state;
+    sheet s = make_sheet(0xb4b);
+    sheet_lines lines;
+    uint8_t fixed[VERTICES] = {0};
+    double *whole, *reduced, *B;
+    sl_stretch_freedom all, freedom;
+    sl_stretch_def def = sl_stretch_default();
+    const int32_t n = dense_matrix(&s, &def, &whole, &all);
+    make_lines(&s, &lines);
+    fixed[s.at[1][1]] = 1;
+    def.fixed = fixed;
+    def.line = lines.line;
+    def.line_count = 6;
+    const int32_t m = dense_matrix(&s, &def, &reduced, &freedom);
+    assert_true(n == 2 * VERTICES && m == freedom.unknowns && m < n - 30);
+    B = calloc((size_t)n * (size_t)m, sizeof *B);
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t u = freedom.unknown[i];
+        for (int k = 0; k < 2 && u >= 0; k++) {
+            B[(i - i % 2 + k) * m + u] += freedom.basis[2 * i + k];
+        }
+    }
+    for (int32_t a = 0; a < m; a++) {
+        for (int32_t b = 0; b < m; b++) {
+            double sum = 0.0;
+            for (int32_t i = 0; i < n; i++) {
+                for (int32_t j = 0; j < n && B[i * m + a] != 0.0; j++) {
+                    sum += B[i * m + a] * whole[i * n + j] * B[j * m + b];
+                }
+            }
+            assert_true(test_near(reduced[a * m + b], sum, 1e-10));
+        }
+    }
+    free(whole);
+    free(reduced);
+    free(B);
+    sl_stretch_freedom_clear(&all);
+    sl_stretch_freedom_clear(&freedom);
+    sl_patch_free(s.patch);
+}
+
 /* Places for pins: where the vertices are, moved by up to `size`. */
 static void make_pins(const sheet *s, double size, uint64_t seed, int32_t count, sl_pin *pin)
 {
@@ -466,6 +534,7 @@ int main(void)
         cmocka_unit_test(a_part_with_its_rim_held_returns_to_the_minimum_of_the_whole),
         cmocka_unit_test(when_all_is_held_nothing_moves),
         cmocka_unit_test(lines_stay_straight_and_everything_else_finds_its_minimum),
+        cmocka_unit_test(the_matrix_of_what_is_left_is_the_projected_one),
         cmocka_unit_test(fixed_lines_and_those_with_held_vertices_stay_in_place),
         cmocka_unit_test(a_vertex_on_three_lines_stays),
         cmocka_unit_test(lines_that_cannot_be_kept_are_refused),
