@@ -18,15 +18,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Sanitised builds leave inlining to the compiler: instrumented and in one function, kernels cost it minutes. */
+/* Sanitised builds keep functions apart: instrumented and in one, kernels take minutes to compile. */
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define LANES_INLINE unused
+#define LANES_SANITIZED 1
 #endif
 #endif
-#if !defined(LANES_INLINE) && defined(__SANITIZE_ADDRESS__)
-#define LANES_INLINE unused
-#elif !defined(LANES_INLINE)
+#if defined(__SANITIZE_ADDRESS__) || defined(LANES_SANITIZED)
+#define LANES_STATIC static
+#define LANES_INLINE noinline, unused
+#else
+#define LANES_STATIC static inline
 #define LANES_INLINE always_inline
 #endif
 

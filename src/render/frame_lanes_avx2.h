@@ -6,7 +6,7 @@
 #include <immintrin.h>
 
 #define LANES_TARGET __attribute__((target("avx2")))
-#define LANES_CALL static inline __attribute__((target("avx2"), LANES_INLINE))
+#define LANES_CALL LANES_STATIC __attribute__((target("avx2"), LANES_INLINE))
 
 typedef __m256 f8;
 typedef __m256i i8;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define LANES_TARGET
-#define LANES_CALL static inline __attribute__((LANES_INLINE))
+#define LANES_CALL LANES_STATIC __attribute__((LANES_INLINE))
 
 typedef struct f8 {
     float v[8];

@@ -6,7 +6,7 @@
 #include <emmintrin.h>
 
 #define LANES_TARGET
-#define LANES_CALL static inline __attribute__((LANES_INLINE))
+#define LANES_CALL LANES_STATIC __attribute__((LANES_INLINE))
 
 typedef struct f8 {
     __m128 lo, hi;
