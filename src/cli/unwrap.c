@@ -31,17 +31,20 @@ typedef struct unwrap_options {
     cli_segment_options segment;
     sl_atlas_def def;
     const char *output, *preview, *seams, *labels;
+    int32_t rotations;
     bool keep_seams, allow_overlap;
 } unwrap_options;
 
-#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 9)
+#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 10)
 
 static void option_table(unwrap_options *o, cli_option *table)
 {
-    const cli_option own[9] = {
+    const cli_option own[10] = {
         {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY to write"},
         {"resolution", 0, CLI_INT, &o->def.pack.resolution, 16, 65536, NULL, "N", "texels a side (2048)"},
         {"margin", 0, CLI_REAL, &o->def.pack.margin, 0, 1024, NULL, "T", "texels between charts (4)"},
+        {"rotations", 0, CLI_CHOICE, &o->rotations, 0, 0, "free|right|none", NULL,
+         "charts are packed turned by any angle, right ones, none"},
         {"preview", 0, CLI_TEXT, &o->preview, 0, 0, NULL, "DIR", "pictures of the model and the atlas"},
         {"seams", 0, CLI_TEXT, &o->seams, 0, 0, NULL, "FILE", "your seams: a line of two vertex numbers an edge"},
         {"labels", 0, CLI_TEXT, &o->labels, 0, 0, NULL, "FILE", "your charts: a line with a number a facet"},
@@ -51,8 +54,8 @@ static void option_table(unwrap_options *o, cli_option *table)
         {"strict", 0, CLI_FLAG, &o->run.strict, 0, 0, NULL, NULL, "exit 4 when there is a warning"},
     };
     memcpy(table, own, sizeof own);
-    cli_segment_table(&o->segment, table + 9);
-    cli_common_options(&o->run, table + 9 + CLI_SEGMENT_OPTIONS);
+    cli_segment_table(&o->segment, table + 10);
+    cli_common_options(&o->run, table + 10 + CLI_SEGMENT_OPTIONS);
 }
 
 static int usage(const char *what)
@@ -211,6 +214,7 @@ int cli_unwrap(int argc, char **argv)
         return code;
     }
     cli_segment_apply(&o.segment);
+    o.def.pack.rotations = (sl_pack_rotations)o.rotations;
     o.def.segment = o.segment.def;
     o.def.best = o.segment.best;
     o.def.optimize = o.segment.optimize;

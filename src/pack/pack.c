@@ -14,7 +14,8 @@ enum {
     FINEST_EFFORT = 6, /* ... from this effort on */
     FEWEST_SWEEPS = 15,
     ROAMING_LEVELS = 2,
-    MOST_CHARTS = 2048 /* that are pushed apart: the work grows by the square of their number */
+    ROAMING_CHARTS = 128, /* more find room nearby, and looking far costs more than it gains */
+    MOST_CHARTS = 2048    /* that are pushed apart: the work grows by the square of their number */
 };
 
 static const double first_step = 1e-2, later_step = 5e-3; /* of the scale, relative */
@@ -113,7 +114,7 @@ static sl_status tighten(const sl_pack_task *task, const sl_pack_def *def, sl_ar
     for (int32_t grid = first, level = 0; grid <= finest; grid *= 2, level++) {
         const sl_separate_def separate = {
             .grid = grid,
-            .far = level < ROAMING_LEVELS,
+            .far = level < ROAMING_LEVELS && task->count <= ROAMING_CHARTS,
             .sweeps = sweeps,
             .step = level == 0 ? first_step : later_step,
             .halvings = level < ROAMING_LEVELS ? 3 : 2,

@@ -31,11 +31,10 @@ typedef struct sl_pack_def {
     int32_t resolution;          /* texels along a page's width; default 2048 */
     double margin;               /* least distance between charts [texels]; half of it to the page's edge; default 4 */
     sl_pack_rotations rotations; /* default SL_ROTATE_FREE */
-    int32_t
-        effort; /* 0: one pass over the charts a scale; each step beyond that doubles the work; default 4, up to 12 */
-    int32_t height; /* texels along a page's height; 0 = as the width; default 0 */
-    int32_t pages;  /* at most so many pages; default 1, as is 0 */
-    double density; /* texels a UV unit; 0 = the largest that fits; default 0 */
+    int32_t effort;              /* 0 to 12: each step about doubles the work beyond the first layout; default 2 */
+    int32_t height;              /* texels along a page's height; 0 = as the width; default 0 */
+    int32_t pages;               /* at most so many pages, up to 1000; default 1, as is 0 */
+    double density;              /* texels a UV unit; 0 = the largest that fits; default 0 */
 } sl_pack_def;
 
 sl_pack_def sl_pack_default(void);
@@ -50,9 +49,11 @@ typedef struct sl_pack_info {
 /* placement: count. Charts are never reflected.
  *
  * Charts become masks of grid cells, one for each of several orientations: every cell that the chart grown by half the
- * margin touches. Masks that share no cell are therefore a margin apart, whatever their shapes: they nest in
- * holes and bays. Largest first, each goes where it lies lowest and leftmost. A search over orders and orientations
- * follows, at growing scales; then the best arrangement is packed tighter on finer grids, down to a 2048th of the page.
+ * margin touches. Masks that share no cell are therefore a margin apart, whatever their shapes: they nest in holes and
+ * bays. Largest first, each goes where it lies lowest and leftmost; a search over orders and orientations follows, at
+ * growing scales. Then up to 2048 charts are let overlap at larger scales and pushed apart again, on finer and finer
+ * grids, down to a 2048th of the page (reports/design/packing.md). A density that is given is kept and fills pages one
+ * after another.
  * Zero-size charts (isolated degenerate facets) get one texel each. SL_INFEASIBLE (so many charts that one texel each
  * and their margins do not fit, or not at the density asked for), SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY,
  * SL_CANCELLED. Work is counted, never timed; the same bytes for any number of threads. */

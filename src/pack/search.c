@@ -8,8 +8,9 @@
 #include <string.h>
 
 enum {
-    WALKERS = 8,      /* plans tried at once, whatever the number of threads */
-    FIRST_PLANS = 16, /* at each scale of the first bisection: every pull, by area and by extent */
+    WALKERS = 8,       /* plans tried at once, whatever the number of threads */
+    FIRST_PLANS = 16,  /* at each scale of the first bisection: every pull, by area and by extent */
+    SMALL_COUNT = 128, /* charts: above, two plans must do: by area and by extent */
     BISECTIONS = 60,
     FEW = 4, /* charts: so few are tried in more orientations */
     TURNS_OF_FEW = 64,
@@ -193,7 +194,7 @@ static sl_status try_first_plans(search *s, double scale, bool *placed)
     *placed = false;
     SL_TRY(new_sheet(s, scale));
     s->homeless = 0;
-    const int32_t plans = s->def->work > 0 ? FIRST_PLANS : 2;
+    const int32_t plans = s->def->work > 0 && s->task->count <= SMALL_COUNT ? FIRST_PLANS : 2;
     for (int32_t p = 0; p < plans && !*placed; p += s->walkers) {
         const int32_t count = plans - p < s->walkers ? plans - p : s->walkers;
         for (int32_t w = 0; w < count; w++) {
