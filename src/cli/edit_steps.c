@@ -10,9 +10,11 @@
 #include "edit/picture.h"
 #include "image/png.h"
 
+static const double beyond = 1e-9; /* outside of the page by rounding only */
+
 /* The atlas in a few numbers. */
 typedef struct outline {
-    int32_t charts, red, constraints;
+    int32_t charts, red, constraints, outside;
     double stretch;
 } outline;
 
@@ -25,6 +27,8 @@ static outline outline_of(const sl_session *session)
         if (chart.faces > 0) {
             o.charts++;
             o.red += chart.red;
+            o.outside +=
+                fmin(chart.low[0], chart.low[1]) < -beyond || fmax(chart.high[0], chart.high[1]) > 1.0 + beyond;
             o.stretch = fmax(o.stretch, chart.distortion.l2);
         }
     }
@@ -123,6 +127,9 @@ int cli_steps_run(cli_steps *steps, const char *mesh, const char *script_path, b
 static void print_saved(cli_run *run, const sl_session *session, const sl_atlas_check *check, const char *output)
 {
     const outline o = outline_of(session);
+    if (o.outside > 0) {
+        cli_note(run, "warning: %d charts reach beyond the page [0, 1]", o.outside);
+    }
     if (run->json) {
         char hash[20];
         snprintf(hash, sizeof hash, "%016" PRIx64, sl_session_hash(session));
