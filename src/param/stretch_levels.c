@@ -228,6 +228,7 @@ static sl_status solve_level(descent *d, int32_t l)
     sl_stretch_def def = *d->def;
     def.relative_decrease = COARSE_DECREASE;
     def.target_l2 = 0.0;
+    def.pin_count = 0;
     SL_TRY(sl_level_patch(d->patch, &d->levels.level[l], &patch, &vertex));
     uv = sl_alloc(patch->nv, 2 * sizeof *uv);
     if (uv == NULL) {
@@ -327,7 +328,10 @@ sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, co
 {
     sl_status status = SL_OK;
     sl_stretch_info result = {0};
-    descent d = {.patch = patch, .def = def, .context = context};
+    sl_stretch_def free_def = *def;
+    descent d = {.patch = patch, .def = &free_def, .context = context};
+    free_def.fixed = NULL;
+    free_def.line_count = 0;
     const double *best;
     double *other = NULL;
     if (!sl_patch_is_disk(patch)) {

@@ -341,6 +341,36 @@ static void a_coarse_level_says_what_is_hopeless(void **state)
     sl_patch_free(patch);
 }
 
+/* What is held needs a start to be held at; places for pins do not. */
+static void pins_are_served_at_the_end_and_what_is_fixed_is_not(void **state)
+{
+    (void)state;
+    sl_patch *patch = chart_hexagon(14, 0.2, chart_bumps, 1.5, 0xde7);
+    double *uv = uv_alloc(patch), *free_uv = uv_alloc(patch);
+    uint8_t fixed[1] = {1}; /* not even as long as the vertices */
+    const int32_t far[2] = {0, patch->nv};
+    const sl_stretch_line line = {2, far, true};
+    sl_stretch_def def = sl_stretch_default();
+    sl_stretch_info info;
+    assert_int_equal(sl_stretch_unfold(patch, &def, NULL, free_uv, NULL), SL_OK);
+    def.fixed = fixed;
+    def.line = &line;
+    def.line_count = 1;
+    assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, NULL), SL_OK);
+    assert_memory_equal(uv, free_uv, 2 * (size_t)patch->nv * sizeof *uv);
+    const sl_pin pin[3] = {{5, {uv[10] + 0.1, uv[11]}}, {90, {uv[180], uv[181] - 0.07}}, {200, {uv[400], uv[401]}}};
+    def.pin = pin;
+    def.pin_count = 3;
+    assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, &info), SL_OK);
+    assert_true(info.levels > 0 && info.pin_distance == 0.0 && chart_flips(patch, uv) == 0);
+    for (int i = 0; i < 3; i++) {
+        assert_memory_equal(&uv[2 * pin[i].vertex], pin[i].uv, sizeof pin->uv);
+    }
+    free(uv);
+    free(free_uv);
+    sl_patch_free(patch);
+}
+
 static void the_result_is_the_same_each_time_and_whatever_fails_leaves_it_alone(void **state)
 {
     (void)state;
@@ -382,6 +412,7 @@ int main(void)
         cmocka_unit_test(a_border_vertex_that_would_cross_goes_inside),
         cmocka_unit_test(a_weight_below_zero_buys_angles),
         cmocka_unit_test(a_coarse_level_says_what_is_hopeless),
+        cmocka_unit_test(pins_are_served_at_the_end_and_what_is_fixed_is_not),
         cmocka_unit_test(the_result_is_the_same_each_time_and_whatever_fails_leaves_it_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
