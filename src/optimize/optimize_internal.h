@@ -100,6 +100,7 @@ typedef struct sl_opt_trial {
     int32_t nto;
     bool valid;    /* all disks, and without flips */
     bool settled;  /* solved to the end, no overlap */
+    bool dropped;  /* not solved at all: two charts joined as they lie overlap */
     double length; /* of the edges, over sqrt(area) */
     double cost;   /* with weights */
     double loss;   /* of the charts that come of it */
@@ -132,6 +133,9 @@ typedef enum sl_opt_effort {
 /* Solves a chart. uv: in and out; a map at hand must be flip-free. *embedded = proven. */
 SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
                                     bool *embedded);
+
+/* sl_certify_embedding of a chart. */
+SL_NODISCARD sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out);
 
 /* Solves every chart again with state->w. */
 SL_NODISCARD sl_status sl_opt_resolve(sl_opt_state *state);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 4 };                   /* windows solved at a time, whatever the number of threads */
+enum { BATCH = 6 };                   /* windows solved at a time, whatever the number of threads */
 static const double HOPE = 0.97;      /* geometric mean of the shares of both budgets below which a balance is tried */
 static const double LEAST_GAP = 1e-4; /* of the surface's unit: gaps below it are as good as none */
 static const int32_t TRIALS_A_ROUND = 40; /* without success, then sewing ends */
@@ -173,8 +173,9 @@ cleanup:
     return status;
 }
 
-/* Solves the next windows of the list and takes the best that keeps the targets; *progress = something was sewn. */
-static sl_status try_batch(sewing *s, int32_t *tried, bool *progress)
+/* Solves the next *count windows of the list (*tried of them; others cross as they lie) and takes the best that keeps
+ * the targets; *progress = something was sewn. */
+static sl_status try_batch(sewing *s, int32_t *count, int32_t *tried, bool *progress)
 {
     sl_status status = SL_OK;
     sl_opt_trial *batch[BATCH];
@@ -187,11 +188,12 @@ static sl_status try_batch(sewing *s, int32_t *tried, bool *progress)
     }
     void *user[2] = {s, batch};
     sl_parallel_for(s->state->context, n, 1, settle_range, user);
-    s->state->info.trials += n;
-    *tried = n;
+    *count = n;
+    *tried = 0;
     double largest[BATCH], mean[BATCH], worth[BATCH];
     for (int32_t k = 0; k < n; k++) {
         SL_TRY(batch[k]->status);
+        *tried += !batch[k]->dropped;
         judge(s->state, batch[k], &largest[k], &mean[k]);
         const bool hope = largest[k] <= 1.0 || mean[k] <= HOPE;
         worth[k] = hope ? saving(s->state, batch[k]) / (0.05 + mean[k]) : 0.0;
@@ -215,6 +217,7 @@ static sl_status try_batch(sewing *s, int32_t *tried, bool *progress)
             s->refused[s->nrefused++] = key;
         }
     }
+    s->state->info.trials += *tried;
     s->state->info.sewings += *progress;
 cleanup:
     return status;
@@ -228,10 +231,10 @@ sl_status sl_opt_sew(sl_opt_state *state)
     sl_opt_weigh(state);
     SL_TRY(list_windows(&s));
     while (idle < TRIALS_A_ROUND) {
-        int32_t tried = 0;
+        int32_t count = 0, tried = 0;
         bool progress;
-        SL_TRY(try_batch(&s, &tried, &progress));
-        if (tried == 0) {
+        SL_TRY(try_batch(&s, &count, &tried, &progress));
+        if (count == 0) {
             break;
         }
         idle = progress ? 0 : idle + tried;

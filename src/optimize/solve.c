@@ -11,7 +11,7 @@
 
 static const double SETTLED = 1e-4;       /* relative decrease at which a chart is solved */
 static const double OPEN_SHARE = 0x1p-10; /* of a border edge: room made between the banks of a fresh cut */
-static const double W_LOW = -4.0, W_HIGH = 1.0;
+static const double W_LOW = -30.0, W_HIGH = 1.0;
 static const int BALANCE_ROUNDS = 6;
 static const double BALANCED = 0.02; /* the two shares of the budgets agree within this ratio */
 
@@ -108,6 +108,17 @@ static sl_status solve_cold(attempt *a, int attempts, double *uv, bool *embedded
         SL_TRY(certify(a, uv, embedded));
     }
 cleanup:
+    return status;
+}
+
+sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out)
+{
+    int32_t nb = 0, *border = NULL;
+    sl_status status = list_border(patch, &nb, &border);
+    if (status == SL_OK) {
+        status = sl_certify_embedding(uv, patch->nt, patch->tri, nb, border, out);
+    }
+    sl_free(border);
     return status;
 }
 

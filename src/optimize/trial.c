@@ -192,9 +192,23 @@ cleanup:
     return status;
 }
 
+/* Two charts brought together that cross each other before anything has moved will hardly come apart. */
+static sl_status drop_crossing(sl_opt_trial *trial)
+{
+    sl_certificate certificate = {0};
+    if (!trial->sew || trial->old[1] < 0 || trial->nto != 1 || !trial->valid) {
+        return SL_OK;
+    }
+    const sl_status status = sl_opt_certify(trial->to[0].patch, trial->to[0].uv, &certificate);
+    trial->dropped = certificate.border_crossings > 0 && certificate.flipped + certificate.degenerate == 0;
+    trial->valid = !trial->dropped;
+    return status;
+}
+
 sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
+    SL_TRY(drop_crossing(trial));
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
         SL_TRY(sl_opt_solve(state, trial->to[k].patch, trial->sew ? SL_OPT_SEWN : SL_OPT_WARM, trial->to[k].uv,
                             &trial->valid));
