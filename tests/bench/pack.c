@@ -1,4 +1,5 @@
 /* tests/bench/pack: atlases of any tool packed anew; fill before and after, CPU time. See README.md. */
+#define _POSIX_C_SOURCE 200809L
 #include "atlas/repack.h"
 #include "base/memory.h"
 #include "meshio/meshfile.h"
