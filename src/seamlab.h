@@ -48,5 +48,6 @@
 #include "symmetry/symmetry.h"
 #include "theorem/families.h"
 #include "theorem/meshes.h"
+#include "view/server.h"
 
 #endif
