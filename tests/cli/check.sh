@@ -150,6 +150,13 @@ expect 0 "$seamlab" unwrap uv.ply -o back.ply --quiet
 expect 0 "$seamlab" unwrap $mesh -o paper.obj --preset paper
 contains paper.atlas.json '"rule":"longest"'
 contains paper.atlas.json '"energy":"unweighted"'
+expect 0 "$seamlab" unwrap $mesh -o best.obj --preset best --target-stretch 1.04 --target-angle 1.15 --threads 2
+contains best.atlas.json '"passed":true'
+contains best.atlas.json '"failed":0'
+contains best.atlas.json '"missed":0'
+contains best.atlas.json '"target_stretch":1.04'
+expect 0 "$seamlab" segment $mesh --preset best --protect first --json
+contains out.txt '"invalid":0'
 expect 0 "$seamlab" unwrap $mesh -o override.obj --sew on --preset paper
 contains override.atlas.json '"sew":true'
 for rule in longest length-lambda lookahead; do
