@@ -95,35 +95,47 @@ cleanup:
     return status;
 }
 
+/* A row of the medians, or of how many models a method is better and worse on. */
+static sl_status summary_row(exp_page *page, const model *models, int32_t count, int setting, int method, bool wins)
+{
+    sl_status status = SL_OK;
+    comparison c[METRICS];
+    int32_t kept, axes;
+    for (int metric = 0; metric < METRICS; metric++) {
+        SL_TRY(compare(models, count, setting, method, metric, &c[metric]));
+    }
+    exp_page_row_begin(page, false);
+    exp_page_cell(page, "%s, %s", method_title[method], setting == AS_CUT ? "as cut" : "default");
+    for (int metric = 0; metric < METRICS; metric++) {
+        if (!wins) {
+            exp_page_cell(page, "&times; %.2f", exp2(c[metric].median));
+        } else if (metric != SECONDS) {
+            exp_page_cell(page, "%d / %d", c[metric].better, c[metric].worse);
+        }
+    }
+    if (wins) {
+        count_axes(models, count, setting, method, &kept, &axes);
+        exp_page_cell(page, "%d of %d", kept, axes);
+    }
+    exp_page_row_end(page);
+cleanup:
+    return status;
+}
+
 sl_status show_summary(exp_page *page, const model *models, int32_t count)
 {
     sl_status status = SL_OK;
-    exp_page_table_begin(page,
-                         "method|charts|seam|L2|angle|area|turning|CPU time|fewer charts|shorter seam|less stretch|"
-                         "straighter|axis kept");
-    for (int k = 0; k < SETTINGS * METHODS; k++) {
-        const int setting = k / METHODS, method = k % METHODS;
-        comparison c[METRICS];
-        int32_t kept, axes;
-        for (int metric = 0; metric < METRICS; metric++) {
-            SL_TRY(compare(models, count, setting, method, metric, &c[metric]));
+    for (int wins = 0; wins < 2; wins++) {
+        exp_page_table_begin(page, wins ? "method|fewer charts|shorter seam|less stretch|less angle|less area|"
+                                          "straighter|axis kept"
+                                        : "method|charts|seam|L2|angle|area|turning|CPU time");
+        for (int k = 0; k < SETTINGS * METHODS && status == SL_OK; k++) {
+            status = summary_row(page, models, count, k / METHODS, k % METHODS, wins == 1);
         }
-        exp_page_row_begin(page, false);
-        exp_page_cell(page, "%s, %s", method_title[method], setting == AS_CUT ? "as cut" : "default");
-        for (int metric = 0; metric < METRICS; metric++) {
-            exp_page_cell(page, "&times; %.2f", exp2(c[metric].median));
-        }
-        for (int metric = 0; metric < SECONDS; metric++) {
-            if (metric != ANGLE && metric != AREA) {
-                exp_page_cell(page, "%d / %d", c[metric].better, c[metric].worse);
-            }
-        }
-        count_axes(models, count, setting, method, &kept, &axes);
-        exp_page_cell(page, "%d of %d", kept, axes);
-        exp_page_row_end(page);
+        exp_page_table_end(page);
+        SL_TRY(status);
     }
 cleanup:
-    exp_page_table_end(page);
     return status;
 }
 
