@@ -60,6 +60,8 @@ static void every_shape_meets_its_targets_in_valid_charts(void **state)
             assert_int_equal(s->chart[c].flat.verdict, SL_CHART_VALID);
             assert_true(s->chart[c].flat.certificate.embedded && l2 <= def.max_stretch);
             assert_true(s->chart[c].topology.genus == 0 && s->chart[c].topology.loops == 1);
+            const sl_distortion *own = &s->chart[c].flat.distortion; /* at the best scale I = a, so L2 = a / A */
+            assert_true(test_near_rel(own->area_uv / own->area_3d, own->l2, 1e-9));
         }
         const sl_distortion d = test_whole_distortion(mesh, t, s);
         assert_true(d.l2 <= def.target_stretch * (1.0 + 1e-9) && d.angle_mean <= def.target_angle * (1.0 + 1e-9));
