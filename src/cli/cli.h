@@ -64,6 +64,7 @@ int cli_measure(int argc, char **argv);
 int cli_overlap(int argc, char **argv);
 int cli_pack(int argc, char **argv);
 int cli_render(int argc, char **argv);
+int cli_front(int argc, char **argv);
 int cli_view(int argc, char **argv);
 int cli_replay(int argc, char **argv);
 int cli_segment(int argc, char **argv);

@@ -15,6 +15,7 @@ typedef struct verb_entry {
 static const verb_entry verbs[] = {
     {"unwrap", cli_unwrap, "cut, flatten and pack a mesh: UVs, a sidecar, pictures"},
     {"edit", cli_edit, "an atlas edited by a script: cut, sew, straighten, angles, symmetry, packing"},
+    {"front", cli_front, "what is reachable: charts and seams by search against stretch, with a plot"},
     {"view", cli_view, "the atlas edited by hand on a page, in space and in UV space"},
     {"replay", cli_replay, "an editing session's log again, step by step: the same bytes"},
     {"measure", cli_measure, "charts, seams, distortion, overlap and fill of any mesh with UVs"},

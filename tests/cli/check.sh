@@ -157,6 +157,15 @@ contains best.atlas.json '"missed":0'
 contains best.atlas.json '"target_stretch":1.04'
 expect 0 "$seamlab" segment $mesh --preset best --protect first --json
 contains out.txt '"invalid":0'
+expect 0 "$seamlab" front $mesh --targets 1.3,1.1 -o front.svg --json
+contains out.txt '"reached": true'
+contains front.svg '</svg>'
+expect 2 "$seamlab" front $mesh --targets 1.1,1.3
+expect 2 "$seamlab" front $mesh --targets 0.5
+expect 2 "$seamlab" front $mesh --targets 1.1 -o front.png
+expect 3 "$seamlab" front no-such.obj
+expect 2 "$seamlab" view $mesh -o out.off
+expect 3 "$seamlab" view no-such.obj
 expect 0 "$seamlab" unwrap $mesh -o override.obj --sew on --preset paper
 contains override.atlas.json '"sew":true'
 for rule in longest length-lambda lookahead; do
