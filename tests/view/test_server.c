@@ -1,16 +1,13 @@
 #define _POSIX_C_SOURCE 200809L
 /* The server by a client of its own: who gets in, what is answered, what a hostile page can do (nothing). */
 #include "support/test_support.h"
+#include "support/ws_client.h"
 #include "view/server.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <sys/time.h>
 #include <threads.h>
 #include <time.h>
 #include <unistd.h>
@@ -97,127 +94,39 @@ static int close_house(void **state)
     return code;
 }
 
-/* A WebSocket client, just enough of RFC 6455, and what it has heard. */
+/* A client, and what it has heard. */
 typedef struct client {
-    int fd;
+    ws_client socket;
     int texts, frames, refused, states;
-    bool closed;
 } client;
 
-static int connect_to(const house *h)
-{
-    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)sl_view_port(h->server))};
-    const struct timeval patience = {.tv_sec = 10};
-    const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    assert_true(fd >= 0);
-    assert_int_equal(connect(fd, (const struct sockaddr *)&address, sizeof address), 0);
-    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    return fd;
-}
-
-/* Sends a request, reads the head of the answer; its status. */
-static int ask(int fd, const char *request)
-{
-    char head[4096];
-    size_t n = 0;
-    if (send(fd, request, strlen(request), MSG_NOSIGNAL) < 0) {
-        return 0;
-    }
-    while (n + 1 < sizeof head && recv(fd, head + n, 1, 0) == 1) {
-        n++;
-        if (n >= 4 && memcmp(head + n - 4, "\r\n\r\n", 4) == 0) {
-            break;
-        }
-    }
-    head[n] = '\0';
-    return n > 12 ? atoi(head + 9) : 0;
-}
-
-/* false: it was not let in. */
 static bool enter(const house *h, client *c, const char *token, const char *origin)
 {
-    char request[1024], own[64];
-    const int port = (int)sl_view_port(h->server);
-    snprintf(own, sizeof own, "http://127.0.0.1:%d", port);
-    snprintf(request, sizeof request,
-             "GET /session?token=%s HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nOrigin: %s\r\nUpgrade: websocket\r\n"
-             "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
-             token != NULL ? token : strstr(sl_view_url(h->server), "token=") + 6, port, origin != NULL ? origin : own);
-    *c = (client){.fd = connect_to(h)};
-    if (ask(c->fd, request) == 101) {
-        return true;
-    }
-    close(c->fd);
-    return false;
-}
-
-static bool say_bytes(client *c, const char *data, size_t size)
-{
-    unsigned char head[8] = {0x81, 0};
-    size_t length = 2;
-    head[1] = (unsigned char)(0x80 | (size < 126 ? size : 126));
-    if (size >= 126) {
-        head[2] = (unsigned char)(size >> 8);
-        head[3] = (unsigned char)size;
-        length = 4;
-    }
-    unsigned char zeros[4] = {0}; /* a mask that changes nothing */
-    return send(c->fd, head, length, MSG_NOSIGNAL) == (ssize_t)length && send(c->fd, zeros, 4, MSG_NOSIGNAL) == 4 &&
-           send(c->fd, data, size, MSG_NOSIGNAL) == (ssize_t)size;
+    const char *own = strstr(sl_view_url(h->server), "token=") + 6;
+    *c = (client){0};
+    return ws_open(&c->socket, sl_view_port(h->server), token != NULL ? token : own, origin);
 }
 
 static void say(client *c, const char *text)
 {
-    say_bytes(c, text, strlen(text));
+    ws_say(&c->socket, text);
 }
 
-static bool receive(client *c, unsigned char *data, size_t size)
-{
-    for (size_t n = 0; n < size;) {
-        const ssize_t got = recv(c->fd, data + n, size - n, 0);
-        if (got <= 0) {
-            c->closed = true;
-            return false;
-        }
-        n += (size_t)got;
-    }
-    return true;
-}
-
-/* One frame from the server. */
 static void hear(client *c)
 {
-    unsigned char head[2], more[8];
-    if (!receive(c, head, 2)) {
-        return;
-    }
-    size_t size = head[1] & 127;
-    const size_t wide = size == 126 ? 2 : size == 127 ? 8 : 0;
-    if (wide > 0 && !receive(c, more, wide)) {
-        return;
-    }
-    size = wide > 0 ? 0 : size;
-    for (size_t k = 0; k < wide; k++) {
-        size = 256 * size + more[k];
-    }
-    unsigned char *data = calloc(size + 1, 1);
-    assert_non_null(data);
-    if (receive(c, data, size)) {
-        const int kind = head[0] & 15;
-        c->frames += kind == 2;
-        c->texts += kind == 1;
-        c->refused += kind == 1 && strstr((char *)data, "\"refused\"") != NULL;
-        c->states += kind == 1 && strstr((char *)data, "\"t\":\"state\"") != NULL;
-        c->closed = c->closed || kind == 8;
-    }
+    char *data = NULL;
+    const int kind = ws_hear(&c->socket, &data, NULL);
+    c->frames += kind == WS_BINARY;
+    c->texts += kind == WS_TEXT;
+    c->refused += kind == WS_TEXT && strstr(data, "\"refused\"") != NULL;
+    c->states += kind == WS_TEXT && strstr(data, "\"t\":\"state\"") != NULL;
     free(data);
 }
 
 /* Until the counter is there; false: the server fell silent, or hung up. */
 static bool hears(client *c, const int *counter, int wanted)
 {
-    while (*counter < wanted && !c->closed) {
+    while (*counter < wanted && !c->socket.closed) {
         hear(c);
     }
     return *counter >= wanted;
@@ -237,7 +146,7 @@ static void strangers_stay_outside(void **state)
 
 static int answer_to(const house *h, const char *request)
 {
-    const int fd = connect_to(h), code = ask(fd, request);
+    const int fd = ws_connect(sl_view_port(h->server)), code = ws_ask(fd, request);
     close(fd);
     return code;
 }
@@ -290,7 +199,7 @@ static void a_page_sees_edits_and_takes_them_back(void **state)
     assert_true(hears(&c, &c.states, 5));
     say(&c, "{\"t\":\"save\"}"); /* nowhere to */
     assert_true(hears(&c, &c.refused, 1));
-    close(c.fd);
+    ws_close(&c.socket);
     thrd_sleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
     assert_true(sl_session_hash(h->session) == hash);
 }
@@ -308,7 +217,7 @@ static void hostile_messages_are_answered_and_change_nothing(void **state)
         for (int32_t i = 0; i < length; i++) {
             noise[i] = (char)test_bits(&rng);
         }
-        say_bytes(&c, noise, (size_t)length);
+        ws_say_bytes(&c.socket, noise, (size_t)length);
     }
     assert_true(hears(&c, &c.refused, 150));
     say(&c, "{\"t\":\"do\",\"line\":{\"do\":\"cut-chart\",\"facet\":999999}}");
@@ -316,7 +225,7 @@ static void hostile_messages_are_answered_and_change_nothing(void **state)
     say(&c, "{\"t\":\"arc\",\"at\":[2000000000,1,0]}");
     say(&c, "{\"t\":\"at\",\"pane\":\"uv\",\"x\":4096,\"y\":4096}");
     assert_true(hears(&c, &c.refused, 202));
-    close(c.fd);
+    ws_close(&c.socket);
     assert_true(sl_session_hash(h->session) == hash);
 }
 
@@ -327,15 +236,15 @@ static void who_says_too_much_is_cut_off(void **state)
     bool open = true;
     assert_true(enter(h, &c, NULL, NULL));
     for (int k = 0; k < 20000 && open; k++) {
-        open = say_bytes(&c, "{\"t\":\"let-go\"}", 14);
+        open = ws_say_bytes(&c.socket, "{\"t\":\"let-go\"}", 14);
     }
-    while (!c.closed) { /* what was said before it was closed, at most ten seconds of silence */
+    while (!c.socket.closed) { /* what was said before it was closed, at most ten seconds of silence */
         hear(&c);
     }
-    close(c.fd);
+    ws_close(&c.socket);
     assert_true(enter(h, &c, NULL, NULL)); /* the others do not notice */
     assert_true(hears(&c, &c.states, 1));
-    close(c.fd);
+    ws_close(&c.socket);
 }
 
 static void no_more_pages_than_there_is_room_for(void **state)
@@ -353,7 +262,7 @@ static void no_more_pages_than_there_is_room_for(void **state)
     assert_int_equal(in, 8);
     for (int k = 0; k < 10; k++) {
         if (there[k]) {
-            close(c[k].fd);
+            ws_close(&c[k].socket);
         }
     }
 }
