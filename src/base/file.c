@@ -88,6 +88,12 @@ cleanup:
     return status;
 }
 
+int64_t sl_file_written(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (int64_t)info.st_mtim.tv_sec * 1000000000 + info.st_mtim.tv_nsec : -1;
+}
+
 sl_status sl_file_read(const char *path, char **data, int64_t *size, sl_diag *diag)
 {
     *data = NULL;

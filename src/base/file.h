@@ -10,6 +10,9 @@
  * SL_IO (missing, a folder, unreadable), SL_OUT_OF_MEMORY. diag is nullable. */
 SL_NODISCARD sl_status sl_file_read(const char *path, char **data, int64_t *size, sl_diag *diag);
 
+/* When the file was last written, in nanoseconds of the system's clock; -1: it is not there. */
+int64_t sl_file_written(const char *path);
+
 /* A file being written: a temporary beside the final name, renamed on commit. Buffered; errors are kept until commit.
  */
 typedef struct sl_writer sl_writer;

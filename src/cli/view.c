@@ -11,11 +11,13 @@
 
 static const cli_verb verb = {
     .name = "view",
-    .usage = "seamlab view MESH [-o OUT] [--port N] [--script FILE]",
-    .summary = "Serves a page on this machine where the atlas is edited by hand, in space and in UV space: seams are zipped,\n"
-               "cut, straightened, angles turned, charts moved; each step is a line of a script that `seamlab edit` repeats.",
+    .usage = "seamlab view MESH [-o OUT] [--port N] [--script FILE] [--texture FILE]",
+    .summary =
+        "Serves a page on this machine where the atlas is edited by hand, in space and in UV space: seams are zipped,\n"
+        "cut, straightened, angles turned, charts moved; each step is a line of a script that `seamlab edit` repeats.",
     .examples = "  seamlab view model.obj -o model-uv.obj\n"
-                "  seamlab view model.obj -o model-uv.obj --script session.jsonl   # goes on where it was left\n",
+                "  seamlab view model.obj -o model-uv.obj --script session.jsonl   # goes on where it was left\n"
+                "  seamlab view model.obj --texture paint.png   # paint in another program, see it here\n",
     .min_files = 1,
     .max_files = 1,
 };
@@ -44,8 +46,8 @@ static int open_session(cli_run *run, const sl_meshfile *file, const char *scrip
     if (script_path != NULL && stat(script_path, &there) == 0) {
         status = sl_script_read(script_path, true, &script, &diag);
         if (status == SL_OK) {
-            status = sl_script_run(&script, -1, &polygons, file->corner_uv, NULL, NULL, NULL, &run->context, session,
-                                   &diag);
+            status =
+                sl_script_run(&script, -1, &polygons, file->corner_uv, NULL, NULL, NULL, &run->context, session, &diag);
         }
         sl_script_clear(&script);
     } else {
@@ -77,13 +79,14 @@ int cli_view(int argc, char **argv)
     sl_view_def def = {0};
     const char *script = NULL, *files[1];
     int32_t file_count = 0;
-    cli_option options[CLI_COMMON_OPTIONS + 3] = {
+    cli_option options[CLI_COMMON_OPTIONS + 4] = {
         {"output", 'o', CLI_TEXT, &def.output, 0, 0, NULL, "OUT", "where the page's save writes: OBJ or PLY"},
         {"port", 0, CLI_INT, &def.port, 0, 65535, NULL, "N", "of 127.0.0.1; 0 = any free one (0)"},
+        {"texture", 0, CLI_TEXT, &def.texture, 0, 0, NULL, "FILE", "PNG or JPEG to show; read again when it changes"},
         {"script", 0, CLI_TEXT, &script, 0, 0, NULL, "FILE", "the session's log: gone on with, and written to"},
     };
-    cli_common_options(&run, options + 3);
-    int code = cli_parse(&verb, options, CLI_COMMON_OPTIONS + 3, argc, argv, 2, files, &file_count);
+    cli_common_options(&run, options + 4);
+    int code = cli_parse(&verb, options, CLI_COMMON_OPTIONS + 4, argc, argv, 2, files, &file_count);
     if (code >= 0) {
         return code;
     }

@@ -27,10 +27,11 @@ static void all_stale(sl_view_server *server)
 
 void sl_view_tell_state(sl_view_server *server)
 {
-    sl_view_send_text(server, 0, sl_state_text(server->session, server->scene, server->def.output != NULL));
+    sl_view_send_text(server, 0,
+                      sl_state_text(server->session, server->scene, server->def.output != NULL, server->textured));
 }
 
-static void changed(sl_view_server *server)
+void sl_view_changed(sl_view_server *server)
 {
     if (sl_scene_view_update(server->scene, server->shown, server->outer) != SL_OK) {
         sl_view_log(server, "picture", "out of memory");
@@ -62,7 +63,7 @@ static void act(sl_view_server *server, sl_view_entry *entry)
         tell_refused(server, entry->client, status, &diag);
     }
     if (status == SL_OK || entry->message.kind == SL_MESSAGE_RELEASE) {
-        changed(server);
+        sl_view_changed(server);
     }
 }
 
@@ -81,7 +82,7 @@ static void go_to(sl_view_server *server, uint64_t client, int32_t step)
     if (status != SL_OK) {
         tell_refused(server, client, status, &diag);
     }
-    changed(server);
+    sl_view_changed(server);
 }
 
 static void save(sl_view_server *server, uint64_t client, bool allow_overlap)
@@ -153,14 +154,14 @@ void sl_view_answer(sl_view_server *server, sl_view_entry *entry)
         break;
     case SL_MESSAGE_LET_GO:
         sl_session_cancel_drag(server->session);
-        changed(server);
+        sl_view_changed(server);
         break;
     case SL_MESSAGE_GOTO:
         go_to(server, entry->client, m->step);
         break;
     case SL_MESSAGE_SHOW:
         server->shown = m->shown;
-        changed(server);
+        sl_view_changed(server);
         break;
     case SL_MESSAGE_SAVE:
         save(server, entry->client, m->overlap);

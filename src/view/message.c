@@ -8,7 +8,7 @@
 static const char *const kind_name[SL_MESSAGE_KINDS] = {"look",    "seen",   "at",   "arc",  "do",   "drag",
                                                         "release", "let-go", "goto", "show", "save", "stop"};
 static const char *const pane_name[SL_PANES] = {"3d", "uv"};
-static const char *const shown_name[SL_SHOWN_KINDS] = {"checker", "charts", "stretch", "plain"};
+static const char *const shown_name[SL_SHOWN_KINDS] = {"checker", "charts", "stretch", "plain", "texture"};
 
 static sl_status wrong(sl_diag *diag, const char *what)
 {
@@ -118,7 +118,7 @@ static sl_status parse_fields(const json_t *object, sl_message *out, sl_diag *di
         return whole_of(object, "step", 0, INT32_MAX, &out->step) ? SL_OK : wrong(diag, "step is a number");
     case SL_MESSAGE_SHOW:
         if (!word_of(object, "what", shown_name, SL_SHOWN_KINDS, &index)) {
-            return wrong(diag, "what to show is checker, charts, stretch or plain");
+            return wrong(diag, "what to show is checker, charts, stretch, plain or texture");
         }
         out->shown = (sl_shown)index;
         return SL_OK;

@@ -17,7 +17,7 @@ enum { SL_MESSAGE_LONGEST = 65536 }; /* bytes */
  *     {"t":"do","line":{"do":"undo"}}         an action, as a session's script has it
  *     {"t":"drag","line":{...}}  {"t":"release","line":{...}}  {"t":"let-go"}
  *     {"t":"goto","step":3}                   undo or redo until so many actions are done
- *     {"t":"show","what":"checker"}           or charts, stretch, plain
+ *     {"t":"show","what":"checker"}           or charts, stretch, plain, texture
  *     {"t":"save","overlap":false}
  *     {"t":"stop"}                            cancels long work; handled out of turn */
 typedef enum sl_message_kind {
@@ -38,7 +38,14 @@ typedef enum sl_message_kind {
 
 typedef enum sl_pane { SL_PANE_3D, SL_PANE_UV, SL_PANES } sl_pane;
 
-typedef enum sl_shown { SL_SHOW_CHECKER, SL_SHOW_CHARTS, SL_SHOW_STRETCH, SL_SHOW_PLAIN, SL_SHOWN_KINDS } sl_shown;
+typedef enum sl_shown {
+    SL_SHOW_CHECKER,
+    SL_SHOW_CHARTS,
+    SL_SHOW_STRETCH,
+    SL_SHOW_PLAIN,
+    SL_SHOW_TEXTURE,
+    SL_SHOWN_KINDS
+} sl_shown;
 
 /* How a pane is looked at. */
 typedef struct sl_look {

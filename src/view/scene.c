@@ -24,6 +24,7 @@ struct sl_scene_view {
     uint8_t *red;             /* nf */
     int32_t *pairs;           /* vertex pairs of lines, 2 nh */
     int32_t reds;
+    sl_image *texture; /* NULL = none */
 };
 
 static void bounds(sl_scene_view *v, const sl_mesh *mesh)
@@ -121,6 +122,7 @@ void sl_scene_view_free(sl_scene_view *view)
     sl_free(view->facet_rgb);
     sl_free(view->red);
     sl_free(view->pairs);
+    sl_image_free(view->texture);
     sl_free(view);
 }
 
@@ -133,6 +135,9 @@ static sl_status color_facets(sl_scene_view *v, const sl_mesh *mesh, sl_shown sh
         if (shown == SL_SHOW_STRETCH) {
             sl_colormap_sample(SL_COLORMAP_HEAT, fmin(stretch[f] - 1.0, 1.0), rgb);
         }
+    }
+    if (shown == SL_SHOW_TEXTURE) {
+        memset(v->facet_rgb, 255, 3 * (size_t)mesh->nf);
     }
     if (shown == SL_SHOW_CHECKER || shown == SL_SHOW_CHARTS) {
         const sl_status status = sl_chart_colors(mesh, sl_session_face_chart(v->session), v->facet_rgb);
@@ -268,14 +273,95 @@ sl_camera sl_scene_view_camera(const sl_scene_view *view, sl_pane pane, const sl
                               : sl_camera_plan(look->x - 0.5 * span * aspect, look->y - 0.5 * span, span, aspect);
 }
 
+void sl_scene_view_set_texture(sl_scene_view *view, sl_image *image)
+{
+    sl_image_free(view->texture);
+    view->texture = image;
+}
+
+/* The picture's colour at a UV, between its four nearest texels. */
+static void sample(const sl_image *image, const double uv[2], double rgb[3])
+{
+    const double x = (uv[0] - floor(uv[0])) * image->width - 0.5,
+                 y = (1.0 - (uv[1] - floor(uv[1]))) * image->height - 0.5;
+    const double fx = x - floor(x), fy = y - floor(y);
+    const int32_t x0 = (int32_t)floor(x), y0 = (int32_t)floor(y);
+    rgb[0] = rgb[1] = rgb[2] = 0.0;
+    for (int k = 0; k < 4; k++) {
+        const int32_t i = (x0 + (k & 1) + image->width) % image->width,
+                      j = (y0 + (k >> 1) + image->height) % image->height;
+        const double weight = ((k & 1) != 0 ? fx : 1.0 - fx) * ((k >> 1) != 0 ? fy : 1.0 - fy);
+        const uint8_t *p = sl_image_pixel(image, i, j);
+        for (int c = 0; c < 3; c++) {
+            rgb[c] += weight * p[c];
+        }
+    }
+}
+
+/* A frame whose surface is white under its light, to be coloured. */
+typedef struct painting {
+    const sl_scene_view *view;
+    const sl_look *look;
+    sl_pane pane;
+    sl_camera camera;
+    uint8_t *rgba;
+} painting;
+
+/* The UV of a pixel; false: it shows nothing of the picture. */
+static bool pixel_uv(const painting *p, int32_t x, int32_t y, double uv[2])
+{
+    const sl_frame_hit hit = sl_frame_pick(p->view->frame[p->pane], x, y);
+    uv[0] = uv[1] = 0.0;
+    if (hit.triangle >= 0) {
+        const double *corner = p->view->corner_uv + 6 * (int64_t)hit.triangle;
+        for (int k = 0; k < 3; k++) {
+            uv[0] += hit.bary[k] * corner[2 * k];
+            uv[1] += hit.bary[k] * corner[2 * k + 1];
+        }
+        return true;
+    }
+    if (p->pane == SL_PANE_UV) { /* the page behind the charts */
+        double origin[3], direction[3];
+        sl_camera_ray(&p->camera, p->look->width, p->look->height, x + 0.5, y + 0.5, origin, direction);
+        uv[0] = p->camera.eye[0] + origin[0];
+        uv[1] = p->camera.eye[1] + origin[1];
+        return uv[0] >= 0.0 && uv[0] <= 1.0 && uv[1] >= 0.0 && uv[1] <= 1.0;
+    }
+    return false;
+}
+
+/* Light times colour: with encoded values, too, since the encoding is nearly a power. */
+static void paint_rows(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    const painting *p = user;
+    (void)chunk;
+    for (int32_t y = (int32_t)begin; y < end; y++) {
+        for (int32_t x = 0; x < p->look->width; x++) {
+            uint8_t *pixel = p->rgba + 4 * ((int64_t)y * p->look->width + x);
+            double uv[2], rgb[3];
+            if (pixel_uv(p, x, y, uv)) {
+                sample(p->view->texture, uv, rgb);
+                for (int c = 0; c < 3; c++) {
+                    pixel[c] = (uint8_t)(pixel[c] * rgb[c] / 255.0 + 0.5);
+                }
+            }
+        }
+    }
+}
+
 sl_status sl_scene_view_draw(sl_scene_view *view, sl_pane pane, const sl_look *look, const sl_context *context,
                              uint8_t *rgba)
 {
-    const sl_camera camera = sl_scene_view_camera(view, pane, look);
+    painting p = {view, look, pane, sl_scene_view_camera(view, pane, look), rgba};
     sl_frame_style style = sl_frame_style_default();
     style.checks = view->shown == SL_SHOW_CHECKER ? 48.0 : 0.0;
     style.lit = pane == SL_PANE_3D;
-    return sl_frame_draw(view->frame[pane], &camera, &style, look->width, look->height, context, rgba);
+    const sl_status status =
+        sl_frame_draw(view->frame[pane], &p.camera, &style, look->width, look->height, context, rgba);
+    if (status == SL_OK && view->shown == SL_SHOW_TEXTURE && view->texture != NULL) {
+        sl_parallel_for(context, look->height, 16, paint_rows, &p);
+    }
+    return status;
 }
 
 /* Distance of a point from the line between two others, in the first `dim` coordinates. */

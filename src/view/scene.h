@@ -4,6 +4,7 @@
 #define SL_VIEW_SCENE_H
 
 #include "edit/session.h"
+#include "image/image.h"
 #include "render/frame.h"
 #include "view/message.h"
 
@@ -14,6 +15,9 @@ void sl_scene_view_free(sl_scene_view *view); /* NULL is a no-op */
 
 /* Takes over what the session is now: UVs, seams, overlaps, lines. After every change. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_scene_view_update(sl_scene_view *view, sl_shown shown, const sl_context *context);
+
+/* What SL_SHOW_TEXTURE shows: a picture over [0, 1]^2, its top row at v = 1, repeated; taken over, NULL = none. */
+void sl_scene_view_set_texture(sl_scene_view *view, sl_image *image);
 
 /* The camera of a pane. */
 sl_camera sl_scene_view_camera(const sl_scene_view *view, sl_pane pane, const sl_look *look);

@@ -1,7 +1,9 @@
 #include "view/server_internal.h"
 #include "view/state.h"
 
+#include "base/file.h"
 #include "base/memory.h"
+#include "image/jpeg.h"
 
 #include <civetweb.h>
 #include <stdio.h>
@@ -102,9 +104,32 @@ static void greet(sl_view_server *server)
         if (page->id != 0 && !page->greeted) {
             page->greeted = true;
             sl_view_send_text(server, page->id, sl_state_said(server->def.title));
-            sl_view_send_text(server, page->id,
-                              sl_state_text(server->session, server->scene, server->def.output != NULL));
+            sl_view_send_text(
+                server, page->id,
+                sl_state_text(server->session, server->scene, server->def.output != NULL, server->textured));
         }
+    }
+}
+
+/* Reads the texture again when its file was written; what cannot be read (half written) stays as it was. */
+static void follow_texture(sl_view_server *server)
+{
+    sl_diag diag = sl_diag_none();
+    sl_image *image = NULL;
+    const double now = sl_view_now();
+    if (server->def.texture == NULL || now - server->texture_asked < 0.3) {
+        return;
+    }
+    server->texture_asked = now;
+    const int64_t written = sl_file_written(server->def.texture);
+    if (written < 0 || (server->textured && written == server->texture_written)) {
+        return;
+    }
+    if (sl_picture_read(server->def.texture, &image, &diag) == SL_OK) {
+        server->texture_written = written;
+        server->textured = true;
+        sl_scene_view_set_texture(server->scene, image);
+        sl_view_changed(server);
     }
 }
 
@@ -118,6 +143,7 @@ sl_status sl_view_serve(sl_view_server *server)
     while (server->def.stop == NULL || !server->def.stop(server->def.stop_user)) {
         const int32_t count = take_messages(server, entries, !busy);
         greet(server);
+        follow_texture(server);
         for (int32_t k = 0; k < count; k++) {
             sl_view_answer(server, &entries[k]);
             sl_message_clear(&entries[k].message);

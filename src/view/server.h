@@ -9,6 +9,7 @@
 typedef struct sl_view_def {
     int32_t port;         /* 0 = any free one */
     const char *output;   /* where "save" writes; NULL = nowhere */
+    const char *texture;  /* PNG or JPEG shown on the surface, read again when it changes; NULL = none */
     const char *title;    /* what the page calls the mesh */
     bool (*stop)(void *); /* asked some times a second; true ends sl_view_serve */
     void *stop_user;

@@ -46,6 +46,9 @@ struct sl_view_server {
     const sl_context *outer;
     sl_scene_view *scene;
     sl_shown shown;
+    bool textured;           /* a texture is there */
+    int64_t texture_written; /* when its file was */
+    double texture_asked;    /* when that was looked at [s] */
     struct mg_context *http;
     int32_t port;
     char token[SL_GUARD_TOKEN], url[128];
@@ -77,6 +80,7 @@ void sl_view_log(sl_view_server *server, const char *what, const char *why);
 /* answer.c: one message, on the session's thread. */
 void sl_view_answer(sl_view_server *server, sl_view_entry *entry);
 void sl_view_tell_state(sl_view_server *server);
+void sl_view_changed(sl_view_server *server); /* pictures and state are told anew */
 
 /* frames.c: sends what is due; returns whether anything was. */
 bool sl_view_send_frames(sl_view_server *server);

@@ -100,15 +100,15 @@ static json_t *notes(const sl_session *session)
     return array;
 }
 
-char *sl_state_text(const sl_session *session, const sl_scene_view *view, bool can_save)
+char *sl_state_text(const sl_session *session, const sl_scene_view *view, bool can_save, bool texture)
 {
     int32_t cursor = 0;
     json_t *lines = history(session, &cursor);
-    return dump(json_pack("{s:s, s:I, s:i, s:i, s:i, s:b, s:o, s:o, s:o, s:o}", "t", "state", "revision",
+    return dump(json_pack("{s:s, s:I, s:i, s:i, s:i, s:b, s:b, s:o, s:o, s:o, s:o}", "t", "state", "revision",
                           (json_int_t)sl_session_revision(session), "facets", (int)sl_session_mesh(session)->nf, "red",
-                          (int)sl_scene_view_red(view), "cursor", (int)cursor, "can_save", (int)can_save, "history",
-                          lines, "charts", charts(session), "constraints", constraints(session), "notes",
-                          notes(session)));
+                          (int)sl_scene_view_red(view), "cursor", (int)cursor, "can_save", (int)can_save, "texture",
+                          (int)texture, "history", lines, "charts", charts(session), "constraints",
+                          constraints(session), "notes", notes(session)));
 }
 
 char *sl_state_hit(const sl_session *session, sl_pane pane, const sl_scene_hit *hit)

@@ -8,7 +8,7 @@
 /* All of these are terminated and owned by the caller (free, since jansson makes them); NULL when memory is out. */
 
 /* {"t":"state",...}: revision, charts, history with its cursor, constraints with places, notes, red facets. */
-char *sl_state_text(const sl_session *session, const sl_scene_view *view, bool can_save);
+char *sl_state_text(const sl_session *session, const sl_scene_view *view, bool can_save, bool texture);
 
 /* {"t":"at",...}: what is under the pointer, with the ends of the edge in both panes. */
 char *sl_state_hit(const sl_session *session, sl_pane pane, const sl_scene_hit *hit);

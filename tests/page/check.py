@@ -4,10 +4,12 @@
 """
 import os
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 from webdriver import CONTROL, DOWN, ENTER, ESCAPE, LEFT, RIGHT, SHIFT, TAB, Browser
 
@@ -34,13 +36,26 @@ const [pane, what, skip] = arguments, done = arguments[arguments.length - 1];
 """
 
 
+def write_png(path, pixel, size=64):
+    """A picture of size x size, pixel(x, y) its colour; whole or not there."""
+    rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    with open(path + ".part", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 2, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    os.rename(path + ".part", path)
+
+
 class Check:
     def __init__(self, seamlab, generator, pictures):
         self.seamlab, self.pictures, self.failed, self.shots = seamlab, pictures, 0, 0
         self.folder = tempfile.mkdtemp(prefix="seamlab-page-files-")
         subprocess.run([generator, "hand", "-o", self.folder], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.mesh, self.out, self.log = (os.path.join(self.folder, n) for n in ("hand.obj", "out.obj", "log.jsonl"))
-        self.server = subprocess.Popen([seamlab, "view", self.mesh, "-o", self.out, "--script", self.log, "--quiet"],
+        self.texture = os.path.join(self.folder, "paint.png")
+        write_png(self.texture, lambda x, y: (230, 40, 30) if (x // 8 + y // 8) % 2 else (250, 200, 60))
+        self.server = subprocess.Popen([seamlab, "view", self.mesh, "-o", self.out, "--script", self.log, "--texture",
+                                        self.texture, "--quiet"],
                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.url = self.server.stdout.readline().strip()
         self.browser = Browser()
@@ -201,6 +216,16 @@ class Check:
             if what == "stretch":
                 self.shot(what)
 
+    def painted(self):
+        mean = """const c = seamlab.panes['3d'].picture, d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                  let red = 0, green = 0; for (let k = 0; k < d.length; k += 4) { red += d[k] > d[k + 1] + 60; green += d[k + 1] > d[k] + 60; } return [red, green];"""
+        self.browser.run("const s = document.getElementById('shown'); s.value = 'texture'; s.dispatchEvent(new Event('change'))")
+        self.expect("a texture is shown", self.wait(lambda: self.browser.run(mean)[0] > 5000))
+        self.shot("texture")
+        write_png(self.texture, lambda x, y: (20, 160 + x, 40))
+        self.expect("and seen anew when its file changes", self.wait(lambda: self.browser.run(mean)[1] > 5000))
+        self.browser.run("const s = document.getElementById('shown'); s.value = 'checker'; s.dispatchEvent(new Event('change'))")
+
     def save(self):
         self.browser.keys(CONTROL, "p")
         time.sleep(1.0)
@@ -256,6 +281,7 @@ class Check:
         self.keyboard()
         self.steps()
         self.shown()
+        self.painted()
         self.second_page()
         self.save()
         self.browser.close()

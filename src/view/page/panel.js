@@ -17,6 +17,7 @@ export class Panel {
     this.facts(state);
     element("undo").disabled = state.cursor === 0;
     element("redo").disabled = state.cursor === state.history.length;
+    element("shown").querySelector("[value=texture]").disabled = !state.texture;
     element("save").disabled = !state.can_save;
     element("save").title = state.can_save ? "Save (Ctrl+S); with Shift also while charts overlap" : "Start with -o OUT to save";
     if (state.notes.length) this.say(state.notes.join("; "));
