@@ -92,6 +92,8 @@ export function makeTools(app) {
       dragged(hit, pane, dx) { if (onPage(hit, pane)) drag({ do: "rotate", facet: hit.facet, degrees: -0.5 * dx }); }, released: release, letGo },
     { key: "s", label: "Scale", hint: "drag a chart in UV left or right", drag: true,
       dragged(hit, pane, dx) { if (onPage(hit, pane)) drag({ do: "scale", facet: hit.facet, factor: Math.exp(0.005 * dx) }); }, released: release, letGo },
+    { key: "h", label: "Share", hint: "click a vertex of a chart, then the one that mirrors it: what corresponds to the chart is cut like it and shares its UVs",
+      click: collect(2, hits => ({ do: "symmetry", facet: hits[0].facet, on: true, corners: hits.map(h => h.corner), mirrored: true })) },
     { key: "y", label: "Own UVs", hint: "click a chart that shares by symmetry: it gets UVs of its own", click: hit => act({ do: "symmetry", facet: hit.facet, on: false }) },
   ];
 
