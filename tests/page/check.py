@@ -18,7 +18,8 @@ const [pane, what, skip] = arguments, done = arguments[arguments.length - 1];
 (async () => {
   const p = seamlab.panes[pane], w = p.picture.width, h = p.picture.height;
   let left = skip;
-  for (let k = 0; k < 1500; k++) {
+  const end = performance.now() + 20000;
+  for (let k = 0; k < 1500 && performance.now() < end; k++) {
     const x = Math.round(w * (0.1 + 0.8 * ((k * 0.754877666) % 1))), y = Math.round(h * (0.1 + 0.8 * ((k * 0.569840291) % 1)));
     const hit = await p.ask(x, y);
     if (hit.facet < 0) continue;
@@ -185,6 +186,40 @@ class Check:
         self.expect(name, self.wait_step(before))
         self.shot(name.replace(" ", "-"))
 
+    def either(self, key, pane, what, count, name, end=None):
+        """A tool in a pane: done, or refused in words; never silence."""
+        before = self.state()
+        self.browser.run("document.getElementById('message').textContent = ''")
+        self.browser.keys(ESCAPE)
+        self.browser.keys(key)
+        for k in range(count):
+            at = self.find(pane, what, 2 * k)
+            if at is not None:
+                self.click(at)
+                time.sleep(0.15)
+        if end:
+            self.browser.keys(end)
+        said = lambda: self.browser.run("return document.getElementById('message').textContent")
+        answered = self.wait(lambda: self.state()["cursor"] != before["cursor"] or said() != "", 10)
+        grew = self.state()["cursor"] > before["cursor"]
+        self.expect(f"{name} in {pane}: {'done' if grew else 'refused: ' + said()[:60]}", answered)
+        if grew:
+            self.browser.keys(CONTROL, "z")
+            self.wait(lambda: self.state()["cursor"] == before["cursor"])
+        return grew
+
+    def every_tool_in_both_panes(self):
+        done = {}
+        for pane in ("3d", "uv"):
+            for key, what, count, name, end in (
+                    ("x", "seam", 1, "delete seam", None), ("k", "inside", 2, "cut", ENTER), ("l", "inside", 1, "loop", None),
+                    ("c", "facet", 1, "halve", None), ("m", "facet", 2, "merge", None), ("u", "inside", 1, "unzip", None),
+                    ("t", "border", 2, "straighten", ENTER), ("w", "border", 2, "straight border", None),
+                    ("b", "border", 4, "rectangle", None), ("o", "border", 1, "right angle", None),
+                    ("p", "border", 1, "pin", None), ("h", "border", 2, "share", None), ("y", "facet", 1, "own UVs", None)):
+                done[name] = self.either(key, pane, what, count, name, end) or done.get(name, False)
+        self.expect("most tools found something to do", sum(done.values()) >= 7)
+
     def keyboard(self):
         before = self.state()
         self.browser.run("seamlab.panes.uv.element.focus()")
@@ -278,6 +313,7 @@ class Check:
         self.on_page("r", "a chart is rotated")
         self.on_page("s", "a chart is scaled")
         self.one_click("p", "uv", "border", "a vertex is pinned", None)
+        self.every_tool_in_both_panes()
         self.keyboard()
         self.steps()
         self.shown()

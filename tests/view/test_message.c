@@ -17,8 +17,8 @@ static sl_status parse(const char *text, sl_message *out)
 }
 
 static const char *const good[] = {
-    "{\"t\":\"look\",\"pane\":\"3d\",\"w\":640,\"h\":480,\"azimuth\":35,\"elevation\":20,\"zoom\":1,\"x\":0,\"y\":0,"
-    "\"still\":true}",
+    ("{\"t\":\"look\",\"pane\":\"3d\",\"w\":640,\"h\":480,\"azimuth\":35,\"elevation\":20,\"zoom\":1,\"x\":0,\"y\":0,"
+     "\"still\":true}"),
     "{\"t\":\"look\",\"pane\":\"uv\",\"w\":16,\"h\":4096,\"zoom\":2.5,\"x\":0.5,\"y\":0.25}",
     "{\"t\":\"seen\",\"pane\":\"uv\"}",
     "{\"t\":\"at\",\"pane\":\"3d\",\"x\":10,\"y\":-1}",
@@ -67,8 +67,8 @@ static void what_is_broken_is_refused(void **state)
         "{\"t\":\"look\",\"pane\":\"uv\",\"w\":100000,\"h\":480,\"zoom\":1,\"x\":0,\"y\":0}",
         "{\"t\":\"look\",\"pane\":\"uv\",\"w\":640,\"h\":480,\"zoom\":0,\"x\":0,\"y\":0}",
         "{\"t\":\"look\",\"pane\":\"uv\",\"w\":640,\"h\":480,\"zoom\":1e999,\"x\":0,\"y\":0}",
-        "{\"t\":\"look\",\"pane\":\"3d\",\"w\":640,\"h\":480,\"zoom\":1,\"x\":0,\"y\":0,\"azimuth\":0,\"elevation\":"
-        "100}",
+        ("{\"t\":\"look\",\"pane\":\"3d\",\"w\":640,\"h\":480,\"zoom\":1,\"x\":0,\"y\":0,\"azimuth\":0,\"elevation\":"
+         "100}"),
         "{\"t\":\"at\",\"pane\":\"uv\",\"x\":\"1\",\"y\":2}",
         "{\"t\":\"at\",\"pane\":\"uv\",\"x\":99999999999999999999,\"y\":2}",
         "{\"t\":\"arc\",\"at\":[1,2]}",
