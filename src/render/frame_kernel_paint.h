@@ -210,7 +210,7 @@ LANES_CALL i8 paint_eight(const sl_frame *f, const frame_tile *tile, const int32
 /* Prepares the tile's triangles. True: one of them has a corner off the picture. */
 LANES_CALL bool paint_triangles(const sl_frame *f, int32_t band, frame_tile *tile)
 {
-    const int32_t *banded = f->banded + f->band_first[band];
+    const int32_t *banded = f->banded != NULL ? f->banded + f->band_first[band] : NULL;
     const uint8_t sheet[4] = {f->style.background[0], f->style.background[1], f->style.background[2], 255};
     uint32_t odd = 0;
     for (int32_t i = 1; i < tile->count; i += 8) {

@@ -109,13 +109,14 @@ static inline void load_index(const sl_frame *f, const int32_t *banded, int32_t 
 
 LANES_TARGET static void raster(const sl_frame *f, int32_t band, int32_t row, int32_t row_end)
 {
-    const int32_t *banded = f->banded + f->band_first[band];
     const int32_t count = (int32_t)(f->band_first[band + 1] - f->band_first[band]);
     int32_t index[2][24];
     clear_rows(f, row, row_end);
-    if (count > 0) {
-        load_index(f, banded, 0, count, index[0]);
+    if (count == 0) { /* where there is nothing at all, nothing was allocated */
+        return;
     }
+    const int32_t *banded = f->banded + f->band_first[band];
+    load_index(f, banded, 0, count, index[0]);
     for (int32_t i = 0; i < count; i += 8) {
         const int32_t n = count - i < 8 ? count - i : 8;
         batch b;
