@@ -331,6 +331,9 @@ if __name__ == "__main__":
         failed = check.run()
     finally:
         check.server.kill()
-        check.browser.driver.kill()
+        try:
+            check.browser.close()
+        except Exception:  # closed already, or past help
+            check.browser.driver.kill()
     print(f"{failed} failed")
     sys.exit(failed != 0)
