@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "cli/cli.h"
 
+#include "atlas/sidecar.h"
+
 #include <cblas.h>
 #include <errno.h>
 #include <signal.h>
@@ -155,6 +157,18 @@ int cli_read_mesh(cli_run *run, const char *path, sl_meshfile **out)
     const sl_status status = sl_meshfile_read(path, out, &diag);
     const int code = cli_fail(run, status, &diag);
     return status == SL_IO || status == SL_UNSUPPORTED ? CLI_BAD_INPUT : code;
+}
+
+const sl_sharing_table *cli_read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
+{
+    char sidecar[4096];
+    sl_diag diag = sl_diag_none();
+    sl_sidecar_path(path, sidecar, sizeof sidecar);
+    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
+    if (status != SL_OK && status != SL_IO) {
+        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
+    }
+    return status == SL_OK ? table : NULL;
 }
 
 bool cli_join_path(const char *folder, const char *name, char *path, size_t size)

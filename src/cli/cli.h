@@ -3,6 +3,7 @@
 #ifndef SL_CLI_CLI_H
 #define SL_CLI_CLI_H
 
+#include "atlas/measure.h"
 #include "base/context.h"
 #include "cli/options.h"
 #include "meshio/meshfile.h"
@@ -47,6 +48,10 @@ void cli_note(cli_run *run, const char *format, ...) SL_PRINTF(2, 3);
 
 /* Reads a mesh; what goes wrong is said on stderr. 0, or the exit code: every trouble with reading is bad input. */
 int cli_read_mesh(cli_run *run, const char *path, sl_meshfile **out);
+
+/* What the sidecar beside the file says of shared charts, for the verbs that read atlases: table, to be cleared, or
+ * NULL without one or where it is of another mesh (which is said on stderr). */
+const sl_sharing_table *cli_read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table);
 
 /* Joins folder and name into path; SL_IO-like failure (too long) gives false. */
 bool cli_join_path(const char *folder, const char *name, char *path, size_t size);

@@ -39,19 +39,6 @@ json_t *cli_measure_json(const char *name, const sl_atlas_measure *m)
     return j;
 }
 
-/* What the sidecar beside the file says of shared charts; NULL without one, or where it is of another mesh. */
-static const sl_sharing_table *read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
-{
-    char sidecar[4096];
-    sl_diag diag = sl_diag_none();
-    sl_sidecar_path(path, sidecar, sizeof sidecar);
-    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
-    if (status != SL_OK && status != SL_IO) {
-        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
-    }
-    return status == SL_OK ? table : NULL;
-}
-
 int cli_measure_path(cli_run *run, const char *path, int32_t resolution, sl_atlas_measure *out)
 {
     sl_diag diag = sl_diag_none();
@@ -69,7 +56,7 @@ int cli_measure_path(cli_run *run, const char *path, int32_t resolution, sl_atla
     } else {
         sl_meshfile_polygons(file, &polygons);
         snprintf(diag.file, sizeof diag.file, "%s", path);
-        const sl_sharing_table *shared = read_sharing(run, path, polygons.nf, &table);
+        const sl_sharing_table *shared = cli_read_sharing(run, path, polygons.nf, &table);
         code = cli_fail(
             run, sl_measure_shared(&polygons, file->corner_uv, shared, resolution, &run->context, out, &diag), &diag);
     }

@@ -39,19 +39,6 @@ typedef struct overlap_result {
     sl_exact_overlap exact;
 } overlap_result;
 
-/* What the sidecar beside the file says of shared charts; NULL without one, or where it is of another mesh. */
-static const sl_sharing_table *read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
-{
-    char sidecar[4096];
-    sl_diag diag = sl_diag_none();
-    sl_sidecar_path(path, sidecar, sizeof sidecar);
-    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
-    if (status != SL_OK && status != SL_IO) {
-        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
-    }
-    return status == SL_OK ? table : NULL;
-}
-
 static sl_status find_overlap(const overlap_options *o, overlap_result *r)
 {
     sl_status status = SL_OK;
@@ -165,7 +152,7 @@ static int check_file(overlap_options *o, const char *path)
     } else {
         sl_meshfile_polygons(file, &polygons);
         snprintf(diag.file, sizeof diag.file, "%s", path);
-        const sl_sharing_table *shared = read_sharing(&o->run, path, polygons.nf, &table);
+        const sl_sharing_table *shared = cli_read_sharing(&o->run, path, polygons.nf, &table);
         code = cli_fail(&o->run, sl_uv_triangles_init(&polygons, file->corner_uv, shared, &r.triangles, &diag), &diag);
     }
     if (code == CLI_DONE) {

@@ -173,19 +173,6 @@ static int deliver(pack_options *o, const sl_meshfile *file, const sl_repacked *
     return code;
 }
 
-/* What the sidecar beside the file says of shared charts; NULL without one, or where it is of another mesh. */
-static const sl_sharing_table *read_sharing(cli_run *run, const char *path, int32_t nf, sl_sharing_table *table)
-{
-    char sidecar[4096];
-    sl_diag diag = sl_diag_none();
-    sl_sidecar_path(path, sidecar, sizeof sidecar);
-    const sl_status status = sl_sidecar_read(sidecar, nf, table, &diag);
-    if (status != SL_OK && status != SL_IO) {
-        cli_note(run, "note: the sidecar is not used: %s", diag.reason);
-    }
-    return status == SL_OK ? table : NULL;
-}
-
 static int pack_file(pack_options *o, const char *path)
 {
     sl_diag diag = sl_diag_none();
@@ -204,7 +191,7 @@ static int pack_file(pack_options *o, const char *path)
         code = cli_fail(&o->run, SL_BAD_INPUT, &diag);
     } else {
         sl_meshfile_polygons(file, &polygons);
-        const sl_sharing_table *shared = read_sharing(&o->run, path, polygons.nf, &table);
+        const sl_sharing_table *shared = cli_read_sharing(&o->run, path, polygons.nf, &table);
         code = cli_fail(
             &o->run, sl_repack(&polygons, file->corner_uv, shared, &o->def, &o->run.context, &repacked, &diag), &diag);
     }
