@@ -125,6 +125,16 @@ static json_t *symmetry_json(const sl_atlas *atlas)
     return j;
 }
 
+static json_t *weights_json(const sl_seam_cost_def *w)
+{
+    json_t *j = json_object();
+    json_object_set_new(j, "crease", number(w->crease));
+    json_object_set_new(j, "concave", number(w->concavity));
+    json_object_set_new(j, "hidden", number(w->visibility));
+    json_object_set_new(j, "loops", number(w->loops));
+    return j;
+}
+
 static json_t *options_json(const sl_atlas_def *def)
 {
     const sl_segment_def *s = &def->segment;
@@ -156,6 +166,7 @@ static json_t *options_json(const sl_atlas_def *def)
         json_object_set_new(j, "chart_cost", number(def->optimize.chart_cost));
         json_object_set_new(j, "seam_cost", number(def->optimize.seam_cost));
         json_object_set_new(j, "protect", json_string(protect[def->optimize.protect]));
+        json_object_set_new(j, "weights", weights_json(&def->optimize.weights));
     }
     json_object_set_new(j, "resolution", json_integer(def->pack.resolution));
     json_object_set_new(j, "margin", number(def->pack.margin));

@@ -17,6 +17,7 @@ void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
 {
     load_def(o, sl_segment_default());
     o->optimize = sl_optimize_default();
+    o->weights = true;
     o->protect = (int32_t)o->optimize.protect;
     o->preset = 0;
     for (int a = 2; a < argc; a++) {
@@ -43,6 +44,16 @@ void cli_segment_table(cli_segment_options *o, cli_option *table)
          "best: weight of the seams' length (1)"},
         {"protect", 0, CLI_CHOICE, &o->protect, 0, 0, "none|axis|first", NULL,
          "best: seams that are never sewn: axes, or the first spectral cuts, too (axis)"},
+        {"weights", 0, CLI_ON_OFF, &o->weights, 0, 0, NULL, NULL,
+         "best: seams cost less where they are less seen; off = length alone (on)"},
+        {"weight-crease", 0, CLI_REAL, &o->optimize.weights.crease, 0.0, 1.0, NULL, "S",
+         "best: how much less along creases, 0 to 1 (0.6)"},
+        {"weight-concave", 0, CLI_REAL, &o->optimize.weights.concavity, 0.0, 1.0, NULL, "S",
+         "best: ... in concave places (0.4)"},
+        {"weight-hidden", 0, CLI_REAL, &o->optimize.weights.visibility, 0.0, 1.0, NULL, "S",
+         "best: ... where little of the outside sees them (0.5)"},
+        {"weight-loops", 0, CLI_REAL, &o->optimize.weights.loops, 0.0, 1.0, NULL, "S",
+         "best: ... along edge loops of quads (0.3)"},
         {"method", 0, CLI_CHOICE, &o->method, 0, 0, "spectral|pca|vsa|fiedler|random|isocharts|embedding", NULL,
          "how a chart is cut in parts: the others are there to compare with"},
         {"clusters", 0, CLI_INT, &o->def.clusters, 2, 1000000, NULL, "N", "embedding: parts of the first cut (2)"},
@@ -92,5 +103,6 @@ void cli_segment_apply(cli_segment_options *o)
     o->def.flatten.abf.energy = (sl_abf_energy)o->energy;
     o->best = o->preset == 2;
     o->optimize.protect = (sl_protect)o->protect;
+    o->optimize.weights = o->weights ? o->optimize.weights : sl_seam_cost_none();
     o->optimize.max_stretch = o->def.flatten.max_stretch;
 }

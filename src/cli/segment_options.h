@@ -9,11 +9,12 @@
 typedef struct cli_segment_options {
     sl_segment_def def;
     sl_optimize_def optimize;
+    bool weights;
     bool best;                                                        /* --preset best: cut by sl_optimize_segment */
     int32_t method, rule, pairing, energy, preset, symmetry, protect; /* positions in their choices */
 } cli_segment_options;
 
-#define CLI_SEGMENT_OPTIONS 31
+#define CLI_SEGMENT_OPTIONS 36
 
 /* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands. */
 void cli_segment_preset(cli_segment_options *o, int argc, char **argv);

@@ -355,7 +355,7 @@ static sl_status choose_side(const sl_session *s, const sl_edit_chart *chart, co
             longest = candidate[k].seam_length;
             *found = true;
             memcpy(side, trial, (size_t)chart->nface);
-            SL_TRY(sl_smooth_cut(s->mesh, graph, SMOOTH_RINGS, trial, &changed));
+            SL_TRY(sl_smooth_cut(s->mesh, graph, NULL, SMOOTH_RINGS, trial, &changed));
             SL_TRY(halves_are_disks(s, chart, trial, &good));
             memcpy(side, good ? trial : side, (size_t)chart->nface);
         }

@@ -24,6 +24,8 @@ SL_NODISCARD sl_status sl_facet_graph_create(const sl_mesh *mesh, const int32_t 
 
 void sl_facet_graph_free(sl_facet_graph *graph); /* NULL is a no-op */
 
+#define SL_PAIR_AUTO_FRACTION 0.9 /* `auto` pairs triangles where at least this share finds a partner */
+
 /* Pairs triangles back into quads: a matching of the edges between triangles, weighted by the shape of the quad they
  * would form (planar, right angles), as heavy as message passing finds it, then improved along augmenting paths while
  * that pairs more triangles. partner[f] = facet paired with f, or -1; length nf. *paired_fraction = share of the

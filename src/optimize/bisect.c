@@ -134,7 +134,7 @@ sl_status sl_opt_bisections(const sl_opt_state *state, int32_t c, sl_opt_trial *
         if (candidate[k].passes) {
             bool changed;
             sl_spectrum_side(spectrum, candidate[k].vector, side);
-            SL_TRY(sl_smooth_cut(state->surface->mesh, &g.graph, RINGS, side, &changed));
+            SL_TRY(sl_smooth_cut(state->surface->mesh, &g.graph, state->surface->weight, RINGS, side, &changed));
             SL_TRY(add_cut(p, &g, side, c, &list[*count]));
             (*count)++;
             taken++;

@@ -9,6 +9,7 @@
 #ifndef SL_OPTIMIZE_OPTIMIZE_H
 #define SL_OPTIMIZE_OPTIMIZE_H
 
+#include "seamcost/seamcost.h"
 #include "segment/segment.h"
 
 /* Which seams sewing must leave alone. An axis that the other side copies is never sewn. */
@@ -26,6 +27,8 @@ typedef struct sl_optimize_def {
     double seam_cost;      /* what seam length is worth in itself; 0 = only charts count; default 1 */
     double start_stretch;  /* L2 above which the first cuts recurse; default 2.5 */
     sl_protect protect;
+    sl_seam_cost_def weights; /* where seams run: factors on their length, of the whole mesh; `partner` is the
+                                 pairing's; default sl_seam_cost_default(), sl_seam_cost_none() = length alone */
     int32_t max_cuts; /* bound on cuts of one piece; default 400 */
 } sl_optimize_def;
 
@@ -42,7 +45,8 @@ typedef struct sl_optimize_info {
 /* sl_segment with each component, or half of one that its mirror image copies, cut by the optimiser instead of by the
  * recursion alone: the recursion's cuts start it. A piece that cannot be optimised is left to the recursion, counted
  * in info->failed. segment: method, rule, vectors, pairing, symmetry as for sl_segment; its sew and flatten bounds hold
- * for what is left to the recursion. info is nullable. Statuses and determinism as sl_segment. */
+ * for what is left to the recursion. info is nullable. Statuses and determinism as sl_segment, and SL_BAD_INPUT
+ * (def->weights). */
 SL_NODISCARD sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulation,
                                            const sl_segment_def *segment, const sl_optimize_def *def,
                                            const sl_context *context, sl_segmentation **out, sl_optimize_info *info);

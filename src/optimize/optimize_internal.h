@@ -8,7 +8,8 @@
 
 /* The piece to be cut, as triangles. Halfedges are those of `patch`: corner c = 3 t + k. */
 typedef struct sl_opt_surface {
-    const sl_mesh *mesh; /* borrowed: the polygons */
+    const sl_mesh *mesh;  /* borrowed: the polygons */
+    const double *weight; /* borrowed: mesh->nh, NULL = 1 */
     sl_patch *patch;
     double *length;    /* 3 nt: of a halfedge */
     double *cost;      /* 3 nt: of cutting it, length times weight; HUGE_VAL inside a polygon */
@@ -19,10 +20,15 @@ typedef struct sl_opt_surface {
     double unit;       /* sqrt(total): lengths are weighed in this unit */
 } sl_opt_surface;
 
-/* mesh must outlive the surface. weight: mesh->nh factors on the lengths, NULL = 1. SL_OUT_OF_MEMORY. */
+/* mesh and weight must outlive the surface. weight: mesh->nh factors on the lengths, NULL = 1. SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_opt_surface_init(const sl_mesh *mesh, const sl_triangulation *triangulation,
                                            const double *weight, sl_opt_surface *out);
 void sl_opt_surface_clear(sl_opt_surface *surface);
+
+/* Weights of a whole mesh's edges, owned by the caller; NULL where all strengths are 0 and no pairs are wanted. Pairs
+ * are those of `pairing`. Statuses of sl_seam_cost_compute. */
+SL_NODISCARD sl_status sl_opt_weights(const sl_mesh *mesh, const sl_seam_cost_def *def, sl_pairing pairing,
+                                      const sl_context *context, double **weight);
 
 /* Sums over the triangles of a chart. */
 typedef struct sl_opt_sums {

@@ -21,6 +21,7 @@ sl_optimize_def sl_optimize_default(void)
                              .seam_cost = 1.0,
                              .start_stretch = 2.5,
                              .protect = SL_PROTECT_AXIS,
+                             .weights = sl_seam_cost_default(),
                              .max_cuts = 400};
 }
 
@@ -189,7 +190,7 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
     sl_opt_surface surface = {0};
     sl_opt_state state = {0};
     *done = false;
-    SL_TRY(sl_opt_surface_init(piece, triangulation, NULL, &surface));
+    SL_TRY(sl_opt_surface_init(piece, triangulation, def->edge_weight, &surface));
     if (!(surface.total > 0.0)) {
         goto cleanup; /* nothing but degenerate facets */
     }
@@ -218,10 +219,18 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
     optimizer o = {.def = def};
     const sl_cutter cutter = {cut_piece, &o};
     sl_segment_def with = *segment;
+    double *weight = NULL;
+    sl_status status = sl_opt_weights(mesh, &def->weights, segment->pairing, context, &weight);
+    if (status != SL_OK) {
+        *out = NULL;
+        return status;
+    }
     with.cutter = &cutter;
+    with.edge_weight = weight;
     with.sew = false;
     with.flatten.max_stretch = def->max_stretch;
-    const sl_status status = sl_segment(mesh, triangulation, &with, context, out);
+    status = sl_segment(mesh, triangulation, &with, context, out);
+    sl_free(weight);
     if (status == SL_OK && info != NULL) {
         *info = (sl_optimize_info){.pieces = o.pieces,
                                    .failed = o.pieces,

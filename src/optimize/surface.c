@@ -50,7 +50,7 @@ sl_status sl_opt_surface_init(const sl_mesh *mesh, const sl_triangulation *trian
                               sl_opt_surface *out)
 {
     sl_status status = SL_OK;
-    *out = (sl_opt_surface){.mesh = mesh};
+    *out = (sl_opt_surface){.mesh = mesh, .weight = weight};
     int32_t *face = sl_alloc(mesh->nf, sizeof *face);
     SL_TRY(face == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     for (int32_t f = 0; f < mesh->nf; f++) {

@@ -13,6 +13,7 @@ sl_seam_cost_def sl_seam_cost_default(void)
                               .visibility = 0.5,
                               .loops = 0.3,
                               .floor = 0.1,
+                              .diagonal = 8.0,
                               .angle_low = 20.0 * degree,
                               .angle_high = 50.0 * degree,
                               .reach = 0.02,
@@ -34,8 +35,8 @@ static bool is_share(double x)
 static bool is_valid(const sl_seam_cost_def *d)
 {
     return is_share(d->crease) && is_share(d->concavity) && is_share(d->visibility) && is_share(d->loops) &&
-           d->floor > 0.0 && d->floor <= 1.0 && d->angle_low >= 0.0 && d->angle_high > d->angle_low &&
-           d->angle_high <= HUGE_VAL && d->reach > 0.0 && d->reach < HUGE_VAL;
+           d->floor > 0.0 && d->floor <= 1.0 && d->diagonal >= 1.0 && d->diagonal < HUGE_VAL && d->angle_low >= 0.0 &&
+           d->angle_high > d->angle_low && d->angle_high <= HUGE_VAL && d->reach > 0.0 && d->reach < HUGE_VAL;
 }
 
 /* 0 up to angle_low, 1 from angle_high on, with a smooth step between. */
@@ -123,7 +124,8 @@ static void finish(const sl_mesh *mesh, const sl_seam_cost_def *def, double *wei
         if (t < 0) {
             weight[h] = 1.0;
         } else if (h < t) {
-            weight[h] = weight[t] = fmax(weight[h], def->floor);
+            const bool diagonal = def->partner != NULL && def->partner[mesh->face[h]] == mesh->face[t];
+            weight[h] = weight[t] = fmax(weight[h], def->floor) * (diagonal ? def->diagonal : 1.0);
         }
     }
 }

@@ -11,7 +11,8 @@
  *
  *     weight[e] = max(floor, (1 - crease c_e) (1 - concavity v_e) (1 - visibility h_e) (1 - loops l_e))
  *
- * with features in [0, 1], each with its strength in [0, 1]; a strength of 0 costs no time.
+ * with features in [0, 1], each with its strength in [0, 1]; a strength of 0 costs no time. The diagonal of a pair of
+ * triangles weighs `diagonal` times as much.
  *   c  how sharp the edge is: its dihedral angle beyond `angle_low`, full at `angle_high`, convex or concave
  *   v  how deep the valley is that the edge lies in: the turn of the normals over `reach`, where the surface is
  *      concave, on the same ramp
@@ -24,6 +25,7 @@ typedef struct sl_seam_cost_def {
     double visibility;      /* default 0.5 */
     double loops;           /* default 0.3 */
     double floor;           /* in (0, 1]; default 0.1 */
+    double diagonal;        /* >= 1; default 8: a seam follows the edges of quads unless there is no other way */
     double angle_low;       /* [rad] default 20 degrees */
     double angle_high;      /* [rad] > angle_low; default 50 degrees */
     double reach;           /* over the square root of the surface's area; default 0.02 */
@@ -38,9 +40,10 @@ sl_seam_cost_def sl_seam_cost_default(void);
 sl_seam_cost_def sl_seam_cost_none(void);
 
 /* weight: nh, equal for the two halfedges of an edge, seams already cut included; in [floor, 1]. An edge beside a
- * degenerate facet counts as flat; a border has weight 1. Does not depend on the mesh's scale or place. SL_BAD_INPUT (a
- * strength or floor out of range), SL_OUT_OF_MEMORY, SL_CANCELLED. Same bytes for any number of threads. O(nh log nh).
- * Source: visibility and concavity as where seams belong, Sheffer, Hart 2002, "Seamster". */
+ * degenerate facet counts as flat; a border has weight 1; a diagonal up to `diagonal`. Does not depend on the mesh's
+ * scale or place. SL_BAD_INPUT (a strength or floor out of range), SL_OUT_OF_MEMORY, SL_CANCELLED. Same bytes for any
+ * number of threads. O(nh log nh). Source: visibility and concavity as where seams belong, Sheffer, Hart 2002,
+ * "Seamster". */
 SL_NODISCARD sl_status sl_seam_cost_compute(const sl_mesh *mesh, const sl_seam_cost_def *def, const sl_context *context,
                                             double *weight);
 

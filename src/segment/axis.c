@@ -299,7 +299,7 @@ static sl_status plane_sides(const sl_piece *piece, const sl_facet_graph *graph,
         const double *c = graph->centroid + 3 * (int64_t)v;
         side[v] = c[0] * mirror->normal[0] + c[1] * mirror->normal[1] + c[2] * mirror->normal[2] >= mirror->offset;
     }
-    return rings > 0 ? sl_smooth_cut(piece->mesh, graph, rings, side, smoothed) : SL_OK;
+    return rings > 0 ? sl_smooth_cut(piece->mesh, graph, piece->weight, rings, side, smoothed) : SL_OK;
 }
 
 sl_status sl_cut_near_plane(const sl_recursion *recursion, sl_piece *piece, const int32_t *partner, sl_chart_job *job,

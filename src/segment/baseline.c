@@ -73,7 +73,7 @@ static sl_status smooth(const sl_piece *piece, const sl_facet_graph *graph, int3
     for (int32_t i = 0; i < n; i++) {
         side[i] = (uint8_t)label[i];
     }
-    SL_TRY(sl_smooth_cut(piece->mesh, graph, rings, side, smoothed));
+    SL_TRY(sl_smooth_cut(piece->mesh, graph, piece->weight, rings, side, smoothed));
     for (int32_t i = 0; i < n; i++) {
         label[i] = side[i];
     }

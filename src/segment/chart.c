@@ -57,7 +57,7 @@ static sl_status open_up(const sl_recursion *r, sl_piece *piece, sl_chart_job *j
     if (piece->mesh->nf == 1) {
         SL_TRY(unglue(piece->mesh, &job->joined));
     } else if (r->def->join && job->topology.genus == 0 && job->topology.loops > 1) {
-        SL_TRY(sl_join_loops(piece->mesh, &job->joined));
+        SL_TRY(sl_join_loops(piece->mesh, piece->weight, &job->joined));
     }
     if (job->joined.count > 0) {
         SL_TRY(sl_piece_topology(piece, &job->topology));
@@ -188,6 +188,7 @@ void sl_chart_job_run(const sl_recursion *r, sl_chart_job *job)
     bool split = false;
     SL_TRY(sl_piece_create(r->mesh, r->triangulation, job->face, job->count, &piece));
     piece->place = r->place;
+    SL_TRY(sl_piece_weigh(piece, r->mesh, r->def->edge_weight));
     SL_TRY(local_partners(r, piece, &partner));
     if (job->depth == 0) {
         SL_TRY(split_by_symmetry(r, piece, partner, job, &split));

@@ -151,7 +151,7 @@ static sl_status facet_sides(const cut_search *s, int32_t vector, bool smooth, u
     *smoothed = false;
     sl_spectrum_side(s->spectrum, vector, node_side);
     if (smooth) {
-        SL_TRY(sl_smooth_cut(s->piece->mesh, s->graph, s->def->smooth, node_side, smoothed));
+        SL_TRY(sl_smooth_cut(s->piece->mesh, s->graph, s->piece->weight, s->def->smooth, node_side, smoothed));
     }
     for (int32_t f = 0; f < s->piece->mesh->nf; f++) {
         side[f] = node_side[s->graph->node[f]];

@@ -172,7 +172,9 @@ sl_status sl_cut_piece(const sl_recursion *r, sl_piece *piece, sl_chart_job *job
     c.corner_uv = sl_calloc(2 * (int64_t)piece->mesh->nh, sizeof *c.corner_uv);
     c.part = sl_alloc(piece->mesh->nf, sizeof *c.part);
     SL_TRY(before == NULL || c.corner_uv == NULL || c.part == NULL ? SL_OUT_OF_MEMORY : SL_OK);
-    SL_TRY(cutter->cut(cutter->user, piece->mesh, piece->triangulation, r->def, r->context, c.corner_uv, &done));
+    sl_segment_def def = *r->def;
+    def.edge_weight = piece->weight;
+    SL_TRY(cutter->cut(cutter->user, piece->mesh, piece->triangulation, &def, r->context, c.corner_uv, &done));
     SL_TRY(list_cuts(&c, before));
     if (done) {
         SL_TRY(sl_mesh_components(piece->mesh, c.part, &c.nparts));

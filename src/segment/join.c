@@ -82,12 +82,12 @@ static void add_entry(loop_graph *g, int32_t *fill, int32_t from, int32_t to, in
     g->halfedge[p] = halfedge;
 }
 
-static void fill_graph(const sl_mesh *mesh, loop_graph *g, int32_t *fill)
+static void fill_graph(const sl_mesh *mesh, const double *weight, loop_graph *g, int32_t *fill)
 {
     for (int32_t h = 0; h < mesh->nh; h++) {
         if (h < mesh->twin[h]) {
             const int32_t a = g->vertex[h], b = g->vertex[sl_next(mesh, h)];
-            const double length = sl_mesh_edge_length(mesh, h);
+            const double length = sl_mesh_edge_length(mesh, h) * (weight != NULL ? weight[h] : 1.0);
             add_entry(g, fill, a, b, h, length);
             add_entry(g, fill, b, a, h, length);
         }
@@ -100,7 +100,7 @@ static void fill_graph(const sl_mesh *mesh, loop_graph *g, int32_t *fill)
     }
 }
 
-static sl_status build_graph(const sl_mesh *mesh, loop_graph *g)
+static sl_status build_graph(const sl_mesh *mesh, const double *weight, loop_graph *g)
 {
     const int32_t n = g->nv + 1;
     int32_t *fill = sl_calloc((int64_t)n + 1, sizeof *fill);
@@ -131,12 +131,12 @@ static sl_status build_graph(const sl_mesh *mesh, loop_graph *g)
         first[v + 1] += first[v];
         fill[v] = first[v];
     }
-    fill_graph(mesh, g, fill);
+    fill_graph(mesh, weight, g, fill);
     sl_free(fill);
     return SL_OK;
 }
 
-static sl_status loop_graph_create(const sl_mesh *mesh, loop_graph *g)
+static sl_status loop_graph_create(const sl_mesh *mesh, const double *weight, loop_graph *g)
 {
     *g = (loop_graph){.vertex = sl_alloc(mesh->nh, sizeof *g->vertex)};
     if (g->vertex == NULL) {
@@ -156,7 +156,7 @@ static sl_status loop_graph_create(const sl_mesh *mesh, loop_graph *g)
         return SL_OUT_OF_MEMORY;
     }
     label_loops(mesh, g);
-    return build_graph(mesh, g);
+    return build_graph(mesh, weight, g);
 }
 
 /* Makes a loop's vertices sources and closes its way to the goal. */
@@ -187,12 +187,12 @@ static void cut_path(sl_mesh *mesh, loop_graph *g, int32_t end, sl_cut_list *lis
     }
 }
 
-sl_status sl_join_loops(sl_mesh *mesh, sl_cut_list *list)
+sl_status sl_join_loops(sl_mesh *mesh, const double *weight, sl_cut_list *list)
 {
     sl_status status = SL_OK;
     loop_graph g;
     *list = (sl_cut_list){sl_alloc(mesh->nh, sizeof *list->halfedge), 0};
-    SL_TRY(loop_graph_create(mesh, &g));
+    SL_TRY(loop_graph_create(mesh, weight, &g));
     if (list->halfedge == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }

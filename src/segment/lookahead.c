@@ -57,7 +57,7 @@ static sl_status side_cost(sl_piece *half, const sl_context *context, double *co
     SL_TRY(sl_piece_topology(half, &topology));
     *cost = TOPOLOGY_PENALTY + HANDLE_PENALTY * topology.genus;
     if (topology.genus == 0 && topology.loops > 1) {
-        SL_TRY(sl_join_loops(half->mesh, &joined));
+        SL_TRY(sl_join_loops(half->mesh, half->weight, &joined));
     }
     if (topology.genus == 0 && topology.loops >= 1) {
         SL_TRY(sl_piece_patch(half, &patch));
@@ -106,6 +106,7 @@ sl_status sl_lookahead_score(const sl_piece *piece, const uint8_t *side, const s
             }
         }
         SL_TRY(sl_piece_create(piece->mesh, piece->triangulation, face, count, &half));
+        SL_TRY(sl_piece_weigh(half, piece->mesh, piece->weight));
         SL_TRY(side_cost(half, context, &cost));
         weighted += area * cost;
         total += area;

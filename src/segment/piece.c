@@ -196,7 +196,20 @@ void sl_piece_free(sl_piece *piece)
     sl_mesh_free(piece->mesh);
     sl_triangulation_free(piece->triangulation);
     sl_free(piece->face);
+    sl_free(piece->weight);
     sl_free(piece);
+}
+
+sl_status sl_piece_weigh(sl_piece *piece, const sl_mesh *parent, const double *weight)
+{
+    if (weight == NULL) {
+        return SL_OK;
+    }
+    piece->weight = sl_alloc(piece->mesh->nh, sizeof *piece->weight);
+    for (int32_t h = 0; h < piece->mesh->nh && piece->weight != NULL; h++) {
+        piece->weight[h] = weight[sl_piece_halfedge(piece, parent, h)];
+    }
+    return piece->weight == NULL ? SL_OUT_OF_MEMORY : SL_OK;
 }
 
 sl_status sl_piece_topology(const sl_piece *piece, sl_topology *out)

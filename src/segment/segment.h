@@ -40,8 +40,8 @@ typedef enum sl_symmetry_use {
 struct sl_segment_def;
 
 /* Cuts a whole piece at once, in place of the recursion: see sl_segment_def.cutter. piece: connected, a copy, in which
- * the seams are to be cut; corner_uv: 2 a corner, each chart in its own frame. All charts must be embedded disks.
- * *done = false leaves the piece to the recursion. */
+ * the seams are to be cut; def->edge_weight: the piece's own; corner_uv: 2 a corner, each chart in its own frame. All
+ * charts must be embedded disks. *done = false leaves the piece to the recursion. */
 typedef struct sl_cutter {
     sl_status (*cut)(void *user, sl_mesh *piece, const sl_triangulation *triangulation,
                      const struct sl_segment_def *def, const sl_context *context, double *corner_uv, bool *done);
@@ -59,21 +59,23 @@ typedef struct sl_segment_def {
                                  its halves are isomorphic; default false */
     bool unshare;             /* copies are laid out too, turned the right way round; default false */
     sl_cut_rule rule;
-    int32_t vectors;      /* eigenvectors computed a cut; default 30 */
-    sl_pairing pairing;   /* triangles back into quads in the facet graph; default auto */
-    bool filter;          /* only vectors with connected positive and negative facets cut (paper, Sec. 3.3); default true;
-                             off, to compare, with the rules by length: looking ahead needs two halves */
-    int32_t smooth;       /* dual rings of the band minimum cut, 0 = off; default 2 */
-    bool join;            /* genus-0 charts with several borders: loops joined by shortest paths; default true */
-    bool sew;             /* merge neighbours while they stay valid; default true */
-    double sew_stretch;   /* L2 bound of a merged chart; default 1.25 */
-    bool protect_first;   /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
-    int32_t max_charts;   /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
-                             reported; default 100000 */
+    int32_t vectors;    /* eigenvectors computed a cut; default 30 */
+    sl_pairing pairing; /* triangles back into quads in the facet graph; default auto */
+    bool filter;        /* only vectors with connected positive and negative facets cut (paper, Sec. 3.3); default true;
+                           off, to compare, with the rules by length: looking ahead needs two halves */
+    int32_t smooth;     /* dual rings of the band minimum cut, 0 = off; default 2 */
+    bool join;          /* genus-0 charts with several borders: loops joined by shortest paths; default true */
+    bool sew;           /* merge neighbours while they stay valid; default true */
+    double sew_stretch; /* L2 bound of a merged chart; default 1.25 */
+    bool protect_first; /* never sew the first cut's seam; default true. An axis of symmetry is never sewn */
+    int32_t max_charts; /* cap on charts that are laid flat, copies not counted; reaching it stops splitting and is
+                           reported; default 100000 */
     int64_t memory_limit; /* bytes that one eigensolve, its matrix and results may take; 0 = none; default 0 */
     sl_flatten_def flatten;
-    const sl_cutter *cutter; /* borrowed; for components, and the halves of those cut at their axis; what comes of it
-                                is neither split nor sewn nor relaxed. NULL = the recursion cuts (default) */
+    const double *edge_weight; /* mesh->nh, positive, equal for both halfedges of an edge: factor on its length where
+                                  loops are joined and cuts smoothed; borrowed; NULL = 1 (default) */
+    const sl_cutter *cutter;   /* borrowed; for components, and the halves of those cut at their axis; what comes of it
+                                  is neither split nor sewn nor relaxed. NULL = the recursion cuts (default) */
 } sl_segment_def;
 
 sl_segment_def sl_segment_default(void);

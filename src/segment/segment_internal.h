@@ -5,8 +5,6 @@
 
 #include "segment/segment.h"
 
-#define SL_PAIR_AUTO_FRACTION 0.9 /* `auto` pairs triangles where at least this share finds a partner */
-
 /* Some facets as a mesh and triangulation of their own, so that cuts can be tried without touching anything shared.
  * Vertices are numbered anew, one per fan over twins and seams inside the piece. */
 typedef struct sl_piece {
@@ -15,6 +13,7 @@ typedef struct sl_piece {
     int32_t *face;  /* mesh->nf: the parent's facet */
     int32_t *place; /* by the parent's facets: places in an order of elimination that parts inherit, -1 = none yet; each
                        piece touches its own facets only; borrowed, NULL = none is kept */
+    double *weight; /* mesh->nh: see sl_segment_def.edge_weight; NULL = 1 */
 } sl_piece;
 
 /* The facets face[0 .. count - 1] (ascending) of a mesh; twins and seams inside the set are kept, others become
@@ -22,6 +21,9 @@ typedef struct sl_piece {
 SL_NODISCARD sl_status sl_piece_create(const sl_mesh *mesh, const sl_triangulation *triangulation, const int32_t *face,
                                        int32_t count, sl_piece **out);
 void sl_piece_free(sl_piece *piece); /* NULL is a no-op */
+
+/* Copies the weights of the parent's edges, where there are some (weight: parent->nh, nullable). SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_piece_weigh(sl_piece *piece, const sl_mesh *parent, const double *weight);
 
 /* The parent's halfedge of halfedge h of the piece. */
 static inline int32_t sl_piece_halfedge(const sl_piece *piece, const sl_mesh *parent, int32_t h)
@@ -52,8 +54,9 @@ typedef struct sl_cut_list {
 void sl_cut_list_clear(sl_cut_list *list);
 
 /* Cuts a connected mesh of several border loops along shortest paths between them, nearest loop first, until one is
- * left: a disk where the genus is 0. list (owned by the caller) names the edges. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_join_loops(sl_mesh *mesh, sl_cut_list *list);
+ * left: a disk where the genus is 0. weight: nh factors on the lengths, NULL = 1. list (owned by the caller) names the
+ * edges. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_join_loops(sl_mesh *mesh, const double *weight, sl_cut_list *list);
 
 /* Sews the edges of a list again. */
 void sl_sew_list(sl_mesh *mesh, const sl_cut_list *list);

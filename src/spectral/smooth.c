@@ -87,7 +87,7 @@ static void number_band(const sl_graph *g, const uint8_t *side, band *b)
     }
 }
 
-static sl_status build_band_graph(const sl_mesh *mesh, const sl_facet_graph *graph, band *b)
+static sl_status build_band_graph(const sl_mesh *mesh, const sl_facet_graph *graph, const double *weight, band *b)
 {
     const sl_graph *g = &graph->graph;
     int32_t entries = 0;
@@ -107,7 +107,8 @@ static sl_status build_band_graph(const sl_mesh *mesh, const sl_facet_graph *gra
             const int32_t j = b->local[g->adj[p]];
             if (j >= 0 && (b->seed[k] == 0 || b->seed[j] == 0)) { /* edges between fixed nodes decide nothing */
                 b->graph.adj[n] = j;
-                b->graph.weight[n++] = sl_mesh_edge_length(mesh, graph->halfedge[p]);
+                const int32_t h = graph->halfedge[p];
+                b->graph.weight[n++] = sl_mesh_edge_length(mesh, h) * (weight != NULL ? weight[h] : 1.0);
             }
         }
     }
@@ -115,7 +116,7 @@ static sl_status build_band_graph(const sl_mesh *mesh, const sl_facet_graph *gra
     return SL_OK;
 }
 
-/* Length of the cut inside the band. */
+/* Weighted length of the cut inside the band. */
 static double band_length(const band *b, const uint8_t *side)
 {
     double length = 0.0;
@@ -147,8 +148,8 @@ static sl_status sides_connected(const sl_graph *g, const uint8_t *side, bool *c
     return status;
 }
 
-static sl_status band_create(const sl_mesh *mesh, const sl_facet_graph *graph, int32_t rings, const uint8_t *side,
-                             band *b)
+static sl_status band_create(const sl_mesh *mesh, const sl_facet_graph *graph, const double *weight, int32_t rings,
+                             const uint8_t *side, band *b)
 {
     const sl_graph *g = &graph->graph;
     *b = (band){.ring = sl_alloc(g->n, sizeof *b->ring),
@@ -165,23 +166,25 @@ static sl_status band_create(const sl_mesh *mesh, const sl_facet_graph *graph, i
     keep_a_core(g, side, 1, b->ring);
     keep_a_core(g, side, 0, b->ring);
     number_band(g, side, b);
-    return build_band_graph(mesh, graph, b);
+    return build_band_graph(mesh, graph, weight, b);
 }
 
 /**
  * Shortens a cut within a band around it.
  *
- *     minimise the length of the edges between F+ and F-, nodes outside the band keeping their side
+ *     minimise the sum of weight times length of the edges between F+ and F-, nodes outside the band keeping their side
  *
  * @param[in]     mesh     for edge lengths
  * @param[in]     graph
+ * @param[in]     weight   nh, positive, the same for both halfedges of an edge; NULL = 1
  * @param[in]     rings    width of the band on each side, in dual rings; 0 = no-op
  * @param[in,out] side     n; replaced only where *changed
  * @param[out]    changed  false where no shorter cut exists or a side would fall apart
  *
  * A side that lies wholly within the band keeps its innermost ring. SL_OUT_OF_MEMORY. One minimum cut of the band.
  */
-sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, int32_t rings, uint8_t *side, bool *changed)
+sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, const double *weight, int32_t rings,
+                        uint8_t *side, bool *changed)
 {
     sl_status status = SL_OK;
     band b = {0};
@@ -190,7 +193,7 @@ sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, int32_
     if (rings <= 0) {
         return SL_OK;
     }
-    SL_TRY(band_create(mesh, graph, rings, side, &b));
+    SL_TRY(band_create(mesh, graph, weight, rings, side, &b));
     smoothed = sl_copy(side, graph->graph.n, sizeof *side);
     if (smoothed == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);

@@ -70,9 +70,9 @@ SL_NODISCARD sl_status sl_cut_candidates(const sl_mesh *mesh, const sl_facet_gra
                                          sl_cut_candidate *candidates);
 
 /* Shortens a cut: a minimum cut with edge-length capacities in the band of nodes within `rings` dual rings of it. Kept
- * only if both sides stay connected; *changed says whether it was. side: n, in and out. rings 0 = no-op.
- * SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, int32_t rings, uint8_t *side,
-                                     bool *changed);
+ * only if both sides stay connected; *changed says whether it was. weight: mesh->nh factors on the lengths, equal for
+ * both halfedges of an edge; NULL = 1. side: n, in and out. rings 0 = no-op. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_smooth_cut(const sl_mesh *mesh, const sl_facet_graph *graph, const double *weight,
+                                     int32_t rings, uint8_t *side, bool *changed);
 
 #endif

@@ -130,6 +130,7 @@ static sl_status run(const sl_polygons *polygons, const task *t, int mesh, int t
     sl_atlas_def def = sl_atlas_default();
     def.best = true;
     def.optimize = sl_optimize_default();
+    def.optimize.weights = sl_seam_cost_none();
     def.optimize.target_stretch = t->target_stretch;
     def.optimize.target_angle = t->target_angle;
     def.optimize.protect = SL_PROTECT_NONE;

@@ -62,7 +62,7 @@ static void a_tube_is_cut_along_the_shortest_path_between_its_ends(void **state)
         sl_mesh *m = test_tube_mesh(&rng, 7 + test_index(&rng, 6), 9, 5.0, (test_facets)(trial % 3));
         const double expected = tube_distance(m, 0.0);
         sl_cut_list list;
-        assert_int_equal(sl_join_loops(m, &list), SL_OK);
+        assert_int_equal(sl_join_loops(m, NULL, &list), SL_OK);
         const sl_topology topology = whole_topology(m);
         assert_true(topology.genus == 0 && topology.loops == 1);
         assert_true(test_near(list_length(m, &list), expected, 1e-12 * 9));
@@ -101,7 +101,7 @@ static void a_patch_with_holes_becomes_a_disk_and_is_sewn_again(void **state)
         assert_int_equal(sl_mesh_copy(m, &before), SL_OK);
         assert_int_equal(whole_topology(m).loops, holes + 1);
         sl_cut_list list;
-        assert_int_equal(sl_join_loops(m, &list), SL_OK);
+        assert_int_equal(sl_join_loops(m, NULL, &list), SL_OK);
         const sl_topology topology = whole_topology(m);
         assert_true(topology.genus == 0 && topology.loops == 1 && list.count >= holes);
         sl_sew_list(m, &list);
@@ -195,7 +195,7 @@ static void paths_branch_where_that_is_shorter(void **state)
         sl_mesh *m = test_patch_mesh(&rng, 28, 28, TEST_TRIANGLES, drop);
         const double pairwise = spanning_length(m);
         sl_cut_list list;
-        assert_int_equal(sl_join_loops(m, &list), SL_OK);
+        assert_int_equal(sl_join_loops(m, NULL, &list), SL_OK);
         const double length = list_length(m, &list);
         assert_true(length <= pairwise * (1.0 + 1e-12));
         shorter += length < pairwise * (1.0 - 1e-9);
@@ -213,7 +213,7 @@ static void a_disk_and_a_closed_surface_are_left_alone(void **state)
         sl_mesh *m =
             closed ? test_spiky_mesh(&rng, 3, 2, 1.0, TEST_MIXED) : test_patch_mesh(&rng, 4, 6, TEST_MIXED, NULL);
         sl_cut_list list;
-        assert_int_equal(sl_join_loops(m, &list), SL_OK);
+        assert_int_equal(sl_join_loops(m, NULL, &list), SL_OK);
         assert_int_equal(list.count, 0);
         sl_cut_list_clear(&list);
         sl_mesh_free(m);

@@ -107,7 +107,7 @@ static void smoothing_finds_the_shortest_cut_of_the_band(void **state)
             }
             memcpy(before, side, sizeof before);
             bool changed = false;
-            assert_int_equal(sl_smooth_cut(mesh, g, 1, side, &changed), SL_OK);
+            assert_int_equal(sl_smooth_cut(mesh, g, NULL, 1, side, &changed), SL_OK);
             if (core[0] > 0 && core[1] > 0 && nfree <= 13) {
                 const double best = shortest_by_enumeration(mesh, g, before, free_node, nfree);
                 const double now = cut_length(mesh, g, side), was = cut_length(mesh, g, before);
@@ -142,7 +142,7 @@ static void smoothing_shortens_keeps_sides_connected_and_stays_in_its_band(void 
             memcpy(before, side, (size_t)n);
             ring_numbers(&g->graph, side, ring);
             bool changed = false;
-            assert_int_equal(sl_smooth_cut(mesh, g, rings, side, &changed), SL_OK);
+            assert_int_equal(sl_smooth_cut(mesh, g, NULL, rings, side, &changed), SL_OK);
             assert_true(sides_connected(&g->graph, side));
             assert_true(changed ? cut_length(mesh, g, side) < cut_length(mesh, g, before)
                                 : memcmp(side, before, (size_t)n) == 0);
@@ -170,7 +170,7 @@ static void a_side_swallowed_by_the_band_does_not_vanish(void **state)
         uint8_t side[128];
         if (random_sides(&rng, &g->graph, 1 + test_index(&rng, 5), side)) {
             bool changed = false;
-            assert_int_equal(sl_smooth_cut(mesh, g, 1 + test_index(&rng, 20), side, &changed), SL_OK);
+            assert_int_equal(sl_smooth_cut(mesh, g, NULL, 1 + test_index(&rng, 20), side, &changed), SL_OK);
             assert_true(sides_connected(&g->graph, side));
         }
         sl_facet_graph_free(g);
@@ -188,7 +188,7 @@ static void no_rings_change_nothing(void **state)
     bool changed = true;
     assert_true(random_sides(&rng, &g->graph, 30, side));
     memcpy(before, side, sizeof side);
-    assert_int_equal(sl_smooth_cut(mesh, g, 0, side, &changed), SL_OK);
+    assert_int_equal(sl_smooth_cut(mesh, g, NULL, 0, side, &changed), SL_OK);
     assert_false(changed);
     assert_memory_equal(side, before, (size_t)g->graph.n);
     sl_facet_graph_free(g);
