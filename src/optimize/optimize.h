@@ -29,7 +29,8 @@ typedef struct sl_optimize_def {
     sl_protect protect;
     sl_seam_cost_def weights; /* where seams run: factors on their length, of the whole mesh; `partner` is the
                                  pairing's; default sl_seam_cost_default(), sl_seam_cost_none() = length alone */
-    int32_t max_cuts; /* bound on cuts of one piece; default 400 */
+    int32_t max_cuts;         /* bound on cuts of one piece; default 400 */
+    int32_t max_sewings;      /* ... on sewings; with max_cuts it ends the same search earlier; default 100000 */
 } sl_optimize_def;
 
 sl_optimize_def sl_optimize_default(void);

@@ -22,7 +22,8 @@ sl_optimize_def sl_optimize_default(void)
                              .start_stretch = 2.5,
                              .protect = SL_PROTECT_AXIS,
                              .weights = sl_seam_cost_default(),
-                             .max_cuts = 400};
+                             .max_cuts = 400,
+                             .max_sewings = 100000};
 }
 
 /* What the pieces report to, side by side: sums of whole numbers do not depend on the order. */

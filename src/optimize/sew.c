@@ -230,7 +230,7 @@ sl_status sl_opt_sew(sl_opt_state *state)
     int32_t idle = 0;
     sl_opt_weigh(state);
     SL_TRY(list_windows(&s));
-    while (idle < TRIALS_A_ROUND) {
+    while (idle < TRIALS_A_ROUND && state->info.sewings < state->def->max_sewings) {
         int32_t count = 0, tried = 0;
         bool progress;
         SL_TRY(try_batch(&s, &count, &tried, &progress));
