@@ -136,6 +136,34 @@ static void a_target_out_of_reach_is_reported(void **state)
     sl_mesh_free(mesh);
 }
 
+/* Bounds end the same search earlier: what is sewn only becomes more. */
+static void a_bound_on_sewings_ends_the_same_search_earlier(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5eb);
+    sl_mesh *mesh = shape(&rng, 0);
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_optimize_def def = sl_optimize_default();
+    sl_optimize_info whole;
+    double before = HUGE_VAL;
+    sl_mesh *copy = NULL;
+    assert_int_equal(sl_mesh_copy(mesh, &copy), SL_OK);
+    sl_segmentation_free(search(copy, t, &def, 1, &whole));
+    sl_mesh_free(copy);
+    assert_true(whole.sewings > 1);
+    for (def.max_sewings = 0; def.max_sewings <= whole.sewings && def.max_sewings < 4; def.max_sewings++) {
+        sl_optimize_info info;
+        assert_int_equal(sl_mesh_copy(mesh, &copy), SL_OK);
+        sl_segmentation_free(search(copy, t, &def, 1, &info));
+        assert_int_equal(info.sewings, def.max_sewings);
+        assert_true(seams_of(copy) < before);
+        before = seams_of(copy);
+        sl_mesh_free(copy);
+    }
+    sl_triangulation_free(t);
+    sl_mesh_free(mesh);
+}
+
 static void a_first_cut_that_is_protected_stays(void **state)
 {
     (void)state;
@@ -241,6 +269,7 @@ int main(void)
         cmocka_unit_test(tighter_targets_cost_longer_seams),
         cmocka_unit_test(the_bytes_do_not_depend_on_the_threads),
         cmocka_unit_test(a_target_out_of_reach_is_reported),
+        cmocka_unit_test(a_bound_on_sewings_ends_the_same_search_earlier),
         cmocka_unit_test(a_first_cut_that_is_protected_stays),
         cmocka_unit_test(sewing_keeps_the_targets_and_shortens_the_seams),
         cmocka_unit_test(scaling_by_a_power_of_two_changes_no_byte),
