@@ -1,4 +1,5 @@
 /* What each part of the segmentation is worth: one setting changed at a time. */
+#include "support/csv.h"
 #include "support/main.h"
 #include "support/turning.h"
 
@@ -8,8 +9,6 @@
 #include <string.h>
 
 enum { CHARTS, SEAM, STRETCH, JAGGED, SECONDS, METRICS, MOST_FACETS = 8000 };
-
-static const char *const metric_name[METRICS] = {"charts", "seam", "l2", "turning", "seconds"};
 
 /* What --quick runs. */
 static const char *const quick_set[] = {"bracket", "mug", "fork"};
@@ -204,30 +203,18 @@ static sl_status write_csv(exp_run *run, const change *c, const model *m, int32_
 {
     sl_status status = SL_OK;
     sl_writer *numbers = NULL, *timings = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "ablations.csv", path));
-    SL_TRY(sl_writer_create(path, &numbers, &run->diag));
-    SL_TRY(exp_path(run, "timings.csv", path));
-    SL_TRY(sl_writer_create(path, &timings, &run->diag));
-    sl_writer_text(numbers, "change,mesh,facets,charts,seam,l2,turning,failed\n");
-    sl_writer_text(timings, "change,mesh,seconds\n");
+    SL_TRY(exp_csv_open(run, "ablations.csv", "change,mesh,facets,charts,seam,l2,turning,failed", &numbers));
+    SL_TRY(exp_csv_open(run, "timings.csv", "change,mesh,seconds", &timings));
     for (int k = 0; k < CHANGES; k++) {
         for (int32_t i = 0; i < count; i++) {
             sl_writer_format(numbers, "%s,%s,%d", c[k].name, m[i].name, m[i].facets);
-            for (int metric = 0; metric < SECONDS; metric++) {
-                sl_writer_text(numbers, ",");
-                sl_writer_double(numbers, m[i].metric[k][metric]);
-            }
+            exp_csv_numbers(numbers, m[i].metric[k], SECONDS);
             sl_writer_format(numbers, ",%d\n", m[i].failed[k]);
             sl_writer_format(timings, "%s,%s,%.3f\n", c[k].name, m[i].name, m[i].metric[k][SECONDS]);
         }
     }
-    status = sl_writer_commit(numbers, &run->diag);
-    numbers = NULL;
-    if (status == SL_OK) {
-        status = sl_writer_commit(timings, &run->diag);
-        timings = NULL;
-    }
+    SL_TRY(exp_csv_close(run, &numbers));
+    SL_TRY(exp_csv_close(run, &timings));
 cleanup:
     sl_writer_abandon(numbers);
     sl_writer_abandon(timings);
@@ -239,14 +226,7 @@ static sl_status write_ratios(exp_run *run, const change *c, const model *m, int
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "ratios.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "row,change");
-    for (int metric = 0; metric < SECONDS; metric++) {
-        sl_writer_format(csv, ",%s", metric_name[metric]);
-    }
-    sl_writer_text(csv, "\n");
+    SL_TRY(exp_csv_open(run, "ratios.csv", "row,change,charts,seam,l2,turning", &csv));
     for (int k = 1; k < CHANGES; k++) {
         sl_writer_format(csv, "%d,%s", k, c[k].what);
         for (int metric = 0; metric < SECONDS; metric++) {
@@ -256,8 +236,7 @@ static sl_status write_ratios(exp_run *run, const change *c, const model *m, int
         }
         sl_writer_text(csv, "\n");
     }
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;

@@ -1,5 +1,6 @@
 /* Sec. 3.2: PCA and planes find the equator of straight objects only. Straight objects, bent more and more. */
 #include "lens.h"
+#include "support/csv.h"
 #include "support/main.h"
 #include "support/pictures.h"
 #include "support/turning.h"
@@ -164,26 +165,20 @@ static sl_status write_csv(exp_run *run, const results *r)
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "bending.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "model,method,degrees,charts,equator,seam_over_length,turning,l2,invalid\n");
+    SL_TRY(exp_csv_open(run, "bending.csv", "model,method,degrees,charts,equator,seam_over_length,turning,l2,invalid",
+                        &csv));
     for (int m = 0; m < MODELS; m++) {
         for (int k = 0; k < METHODS; k++) {
             for (int32_t a = 0; a < r->angles; a++) {
                 const outcome *o = &r->outcome[m][a][k];
                 const double number[] = {o->equator, o->seam, o->turning, o->l2};
                 sl_writer_format(csv, "%s,%s,%.0f,%d", models[m].name, method_name[k], o->degrees, o->charts);
-                for (size_t i = 0; i < SL_COUNTOF(number); i++) {
-                    sl_writer_text(csv, ",");
-                    sl_writer_double(csv, number[i]);
-                }
+                exp_csv_numbers(csv, number, SL_COUNTOF(number));
                 sl_writer_format(csv, ",%d\n", o->invalid);
             }
         }
     }
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;

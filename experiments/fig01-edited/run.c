@@ -2,10 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "generators.h"
+#include "support/edited.h"
 #include "support/main.h"
-#include "support/pictures.h"
-#include "support/session.h"
 
 enum { WIDTH = 1600, HEIGHT = 700, SEAMS = 6, LINES = 4, TRIED = 60, LEAST_EDGES = 6 };
 
@@ -86,54 +84,45 @@ static bool straighten(exp_run *run, sl_session *session, const line *l)
     return done;
 }
 
-static sl_status edit(exp_run *run, exp_page *page, exp_claims *claims, const sl_polygons *polygons)
+/* The longest arcs that take it, until there are enough lines. */
+static int32_t straighten_longest(exp_run *run, sl_session *session)
 {
-    sl_status status = SL_OK;
-    sl_session *session = NULL;
-    sl_action open = sl_action_default(SL_ACTION_OPEN), pack = sl_action_default(SL_ACTION_PACK);
-    const sl_atlas_def def = exp_session_def();
-    const sl_view view = exp_view_of("quadruped");
-    const sl_picture picture = exp_picture(run, WIDTH, HEIGHT);
-    exp_state state[2];
     line lines[TRIED];
-    SL_TRY(sl_session_create(polygons, NULL, &open, &def, &run->context, &session, &run->diag));
-    state[0] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "automatic.png"));
-    const int32_t glued = exp_session_glue(run, session, SEAMS, bound);
     const int32_t found = find_lines(session, lines);
     int32_t straight = 0;
     for (int32_t k = 0; k < found && straight < LINES; k++) {
         straight += straighten(run, session, &lines[k]);
     }
-    SL_TRY(sl_session_apply(session, &pack, &run->context, &run->diag));
-    state[1] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "edited.png"));
-    SL_TRY(exp_session_finish(run, session, polygons, "quadruped", &def, claims));
-    exp_claims_measure(claims, "quadruped", "seams glued", glued);
-    exp_claims_measure(claims, "quadruped", "seams straightened", straight);
-    exp_claims_measure(claims, "quadruped", "red facets", state[1].red);
-    exp_claims_measure(claims, "quadruped", "charts saved", state[0].charts - state[1].charts);
-    exp_page_figure(page, "", "automatic.png", "the model and its automatic atlas",
-                    "<b>Left</b> of the paper's figure: the seams proposed (black) and a valid texture mapping.");
-    exp_page_figure(page, "yes", "edited.png", "the model after editing",
-                    "<b>Right</b>: charts sewn, parts of the seams constrained to be straight (blue).");
-    exp_session_table(page, 2, (const char *const[]){"automatic", "edited"}, state);
-cleanup:
-    sl_session_free(session);
-    return status;
+    return straight;
+}
+
+static sl_status edit(exp_editing *e)
+{
+    exp_claims_measure(e->claims, "quadruped", "seams glued", exp_session_glue(e->run, e->session, SEAMS, bound));
+    exp_claims_measure(e->claims, "quadruped", "seams straightened", straighten_longest(e->run, e->session));
+    return SL_OK;
+}
+
+static sl_status finish(exp_editing *e)
+{
+    exp_claims_measure(e->claims, "quadruped", "charts saved", e->before.charts - e->after.charts);
+    return SL_OK;
 }
 
 static sl_status show(exp_run *run, exp_page *page, exp_claims *claims)
 {
-    sl_status status = SL_OK;
-    sl_generated *mesh = NULL;
-    sl_polygons polygons;
-    SL_TRY(sl_generator_find("quadruped")->make(1, run->quick ? 0 : 1, &mesh));
-    sl_generated_polygons(mesh, &polygons);
-    SL_TRY(edit(run, page, claims, &polygons));
-cleanup:
-    sl_generated_free(mesh);
-    return status;
+    const exp_edited figure = {
+        .model = "quadruped",
+        .width = WIDTH,
+        .height = HEIGHT,
+        .edit = edit,
+        .finish = finish,
+        .before = {"automatic.png", "the model and its automatic atlas",
+                   "<b>Left</b> of the paper's figure: the seams proposed (black) and a valid texture mapping."},
+        .after = {"edited.png", "the model after editing",
+                  "<b>Right</b>: charts sewn, parts of the seams constrained to be straight (blue)."},
+        .row = "edited"};
+    return exp_edited_show(run, page, claims, &figure);
 }
 
 int main(int argc, char **argv)

@@ -4,7 +4,7 @@
 #include "overlap/exact.h"
 #include "support/main.h"
 #include "support/pictures.h"
-#include "zipper.h"
+#include "support/zipper.h"
 
 #include <math.h>
 #include <stdio.h>

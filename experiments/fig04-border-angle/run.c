@@ -1,4 +1,5 @@
 /* Figure 4: the angle at a border vertex turned through 180 degrees, 5 degrees and two iterations a drag. */
+#include "support/csv.h"
 #include "support/sheet.h"
 
 #include <math.h>
@@ -101,12 +102,11 @@ static void table_of(exp_page *page, exp_claims *claims, const char *name, const
 static sl_status write_csv(exp_run *run, const char *name, const drag *drags)
 {
     sl_status status = SL_OK;
-    sl_writer *writer = NULL;
-    char path[EXP_PATH], file[96];
+    sl_writer *csv = NULL;
+    char file[96];
     snprintf(file, sizeof file, "%s.csv", name);
-    SL_TRY(exp_path(run, file, path));
-    SL_TRY(sl_writer_create(path, &writer, &run->diag));
-    sl_writer_text(writer, "drag,asked,gradient,g2,g3,crossings,distortion,gradient_released,iterations_released\n");
+    SL_TRY(exp_csv_open(run, file,
+                        "drag,asked,gradient,g2,g3,crossings,distortion,gradient_released,iterations_released", &csv));
     for (int32_t k = 0; k <= DRAGS; k++) {
         const exp_solution *s = &drags[k].solution;
         const double row[] = {drags[k].asked,
@@ -117,15 +117,13 @@ static sl_status write_csv(exp_run *run, const char *name, const drag *drags)
                               s->distortion.angle_mean,
                               drags[k].released.abf.gradient,
                               drags[k].released.iterations};
-        sl_writer_int(writer, k);
-        for (size_t i = 0; i < SL_COUNTOF(row); i++) {
-            sl_writer_text(writer, ",");
-            sl_writer_double(writer, row[i]);
-        }
-        sl_writer_text(writer, "\n");
+        sl_writer_int(csv, k);
+        exp_csv_numbers(csv, row, SL_COUNTOF(row));
+        sl_writer_text(csv, "\n");
     }
-    status = sl_writer_commit(writer, &run->diag);
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
+    sl_writer_abandon(csv);
     return status;
 }
 

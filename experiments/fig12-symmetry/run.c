@@ -2,6 +2,7 @@
 #include "generators.h"
 #include "image/png.h"
 #include "render/chart_colors.h"
+#include "support/csv.h"
 #include "support/main.h"
 #include "support/pictures.h"
 #include "walker.h"
@@ -207,21 +208,18 @@ static void table(exp_page *page, const result *r)
 static sl_status write_csv(exp_run *run, const result *r)
 {
     sl_status status = SL_OK;
-    sl_writer *writer = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "sharing.csv", path));
-    SL_TRY(sl_writer_create(path, &writer, &run->diag));
-    sl_writer_text(writer, "model,facets,charts_without,charts_with,copies,most_images,saved,scale_gain\n");
+    sl_writer *csv = NULL;
+    SL_TRY(exp_csv_open(run, "sharing.csv",
+                        "model,facets,charts_without,charts_with,copies,most_images,saved,scale_gain", &csv));
     for (int k = 0; k < MODELS; k++) {
-        sl_writer_format(writer, "%s,%d,%d,%d,%d,%d,", r[k].name, r[k].facets, r[k].charts[0], r[k].charts[1],
-                         r[k].copies, r[k].most_images);
-        sl_writer_double(writer, r[k].saved);
-        sl_writer_text(writer, ",");
-        sl_writer_double(writer, r[k].scale[1] / r[k].scale[0]);
-        sl_writer_text(writer, "\n");
+        sl_writer_format(csv, "%s,%d,%d,%d,%d,%d", r[k].name, r[k].facets, r[k].charts[0], r[k].charts[1], r[k].copies,
+                         r[k].most_images);
+        exp_csv_numbers(csv, (const double[]){r[k].saved, r[k].scale[1] / r[k].scale[0]}, 2);
+        sl_writer_text(csv, "\n");
     }
-    status = sl_writer_commit(writer, &run->diag);
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
+    sl_writer_abandon(csv);
     return status;
 }
 

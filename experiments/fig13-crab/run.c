@@ -4,9 +4,8 @@
 
 #include "generators.h"
 #include "support/bake.h"
+#include "support/edited.h"
 #include "support/main.h"
-#include "support/pictures.h"
-#include "support/session.h"
 
 enum { WIDTH = 1600, HEIGHT = 700, SEAMS = 10, TEXELS = 1024 };
 
@@ -106,56 +105,45 @@ static double share_of_copies(const sl_session *session)
     return copies / all;
 }
 
-static sl_status edit(exp_run *run, exp_page *page, exp_claims *claims, const sl_generated *crab,
-                      const sl_polygons *polygons)
+static sl_status edit(exp_editing *e)
 {
     sl_status status = SL_OK;
-    sl_session *session = NULL;
-    sl_image *texture = NULL;
-    sl_action open = sl_action_default(SL_ACTION_OPEN), pack = sl_action_default(SL_ACTION_PACK);
-    const sl_atlas_def def = exp_session_def();
-    const sl_view view = exp_view_of("crab");
-    const sl_picture picture = exp_picture(run, WIDTH, HEIGHT);
-    exp_state state[2];
-    SL_TRY(sl_session_create(polygons, NULL, &open, &def, &run->context, &session, &run->diag));
-    state[0] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "automatic.png"));
-    SL_TRY(cut_axis(run, session, find_mirror(crab)));
-    const int32_t glued = exp_session_glue_where(run, session, SEAMS, bound, is_left);
-    const int32_t clones = clone(run, session, find_mirror(crab));
-    SL_TRY(sl_session_apply(session, &pack, &run->context, &run->diag));
-    state[1] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "edited.png"));
-    SL_TRY(exp_bake(session, TEXELS, paint_crab, NULL, &texture));
-    SL_TRY(exp_draw_textured(run, session, texture, &view, &picture, "textured.png"));
-    SL_TRY(exp_session_finish(run, session, polygons, "crab", &def, claims));
-    exp_claims_measure(claims, "crab", "seams glued", glued);
-    exp_claims_measure(claims, "crab", "charts cloned", clones);
-    exp_claims_measure(claims, "crab", "texture saved", share_of_copies(session));
-    exp_claims_measure(claims, "crab", "red facets", state[1].red);
-    exp_page_figure(page, "", "automatic.png", "the crab and its automatic atlas", "The automatic atlas.");
-    exp_page_figure(page, "yes", "edited.png", "the crab after editing",
-                    "One half edited, then cloned: what has one colour shares its UVs.");
-    exp_page_figure(page, "yes", "textured.png", "the crab textured", "Painted on one half in 2D, seen on both.");
-    exp_session_table(page, 2, (const char *const[]){"automatic", "edited and cloned"}, state);
+    const sl_planted *mirror = find_mirror(e->generated);
+    SL_TRY(mirror != NULL ? SL_OK : SL_INTERNAL);
+    SL_TRY(cut_axis(e->run, e->session, mirror));
+    exp_claims_measure(e->claims, "crab", "seams glued",
+                       exp_session_glue_where(e->run, e->session, SEAMS, bound, is_left));
+    exp_claims_measure(e->claims, "crab", "charts cloned", clone(e->run, e->session, mirror));
 cleanup:
-    sl_session_free(session);
+    return status;
+}
+
+static sl_status paint(exp_editing *e)
+{
+    sl_status status = SL_OK;
+    sl_image *texture = NULL;
+    exp_claims_measure(e->claims, "crab", "texture saved", share_of_copies(e->session));
+    SL_TRY(exp_bake(e->session, TEXELS, paint_crab, NULL, &texture));
+    SL_TRY(exp_draw_textured(e->run, e->session, texture, &e->view, &e->picture, "textured.png"));
+cleanup:
     sl_image_free(texture);
     return status;
 }
 
 static sl_status show(exp_run *run, exp_page *page, exp_claims *claims)
 {
-    sl_status status = SL_OK;
-    sl_generated *crab = NULL;
-    sl_polygons polygons;
-    SL_TRY(sl_generator_find("crab")->make(1, run->quick ? 0 : 1, &crab));
-    sl_generated_polygons(crab, &polygons);
-    SL_TRY(find_mirror(crab) != NULL ? SL_OK : SL_INTERNAL);
-    SL_TRY(edit(run, page, claims, crab, &polygons));
-cleanup:
-    sl_generated_free(crab);
-    return status;
+    const exp_edited figure = {
+        .model = "crab",
+        .width = WIDTH,
+        .height = HEIGHT,
+        .edit = edit,
+        .finish = paint,
+        .before = {"automatic.png", "the crab and its automatic atlas", "The automatic atlas."},
+        .after = {"edited.png", "the crab after editing",
+                  "One half edited, then cloned: what has one colour shares its UVs."},
+        .more = {"textured.png", "the crab textured", "Painted on one half in 2D, seen on both."},
+        .row = "edited and cloned"};
+    return exp_edited_show(run, page, claims, &figure);
 }
 
 int main(int argc, char **argv)

@@ -1,55 +1,37 @@
 /* Figure 14: a plane; after the automatic segmentation eight seams are glued. */
-#include "generators.h"
+#include "support/edited.h"
 #include "support/main.h"
-#include "support/pictures.h"
-#include "support/session.h"
 
 enum { WIDTH = 1600, HEIGHT = 700, SEAMS = 8 };
 
 static const double bound = 1.5; /* L2 that a glued chart may reach */
 
-static sl_status edit(exp_run *run, exp_page *page, exp_claims *claims, const sl_polygons *polygons)
+static sl_status edit(exp_editing *e)
 {
-    sl_status status = SL_OK;
-    sl_session *session = NULL;
-    sl_action open = sl_action_default(SL_ACTION_OPEN), pack = sl_action_default(SL_ACTION_PACK);
-    const sl_atlas_def def = exp_session_def();
-    const sl_view view = exp_view_of("airplane");
-    const sl_picture picture = exp_picture(run, WIDTH, HEIGHT);
-    exp_state state[2];
-    SL_TRY(sl_session_create(polygons, NULL, &open, &def, &run->context, &session, &run->diag));
-    state[0] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "automatic.png"));
-    const int32_t glued = exp_session_glue(run, session, SEAMS, bound);
-    SL_TRY(sl_session_apply(session, &pack, &run->context, &run->diag));
-    state[1] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "refined.png"));
-    SL_TRY(exp_session_finish(run, session, polygons, "airplane", &def, claims));
-    exp_claims_measure(claims, "airplane", "seams glued", glued);
-    exp_claims_measure(claims, "airplane", "red facets", state[1].red);
-    exp_claims_measure(claims, "airplane", "worst L2", state[1].stretch);
-    exp_claims_measure(claims, "airplane", "seam left", state[1].seam / state[0].seam);
-    exp_page_figure(page, "", "automatic.png", "the plane and its automatic atlas",
-                    "The automatic segmentation, and the atlas that the user starts with.");
-    exp_page_figure(page, "yes", "refined.png", "the plane after eight seams were glued",
-                    "Eight seams glued: model and parameterization, packed anew.");
-    exp_session_table(page, 2, (const char *const[]){"automatic", "eight seams glued"}, state);
-cleanup:
-    sl_session_free(session);
-    return status;
+    exp_claims_measure(e->claims, "airplane", "seams glued", exp_session_glue(e->run, e->session, SEAMS, bound));
+    return SL_OK;
+}
+
+static sl_status finish(exp_editing *e)
+{
+    exp_claims_measure(e->claims, "airplane", "worst L2", e->after.stretch);
+    exp_claims_measure(e->claims, "airplane", "seam left", e->after.seam / e->before.seam);
+    return SL_OK;
 }
 
 static sl_status show(exp_run *run, exp_page *page, exp_claims *claims)
 {
-    sl_status status = SL_OK;
-    sl_generated *plane = NULL;
-    sl_polygons polygons;
-    SL_TRY(sl_generator_find("airplane")->make(1, run->quick ? 0 : 1, &plane));
-    sl_generated_polygons(plane, &polygons);
-    SL_TRY(edit(run, page, claims, &polygons));
-cleanup:
-    sl_generated_free(plane);
-    return status;
+    const exp_edited figure = {.model = "airplane",
+                               .width = WIDTH,
+                               .height = HEIGHT,
+                               .edit = edit,
+                               .finish = finish,
+                               .before = {"automatic.png", "the plane and its automatic atlas",
+                                          "The automatic segmentation, and the atlas that the user starts with."},
+                               .after = {"refined.png", "the plane after eight seams were glued",
+                                         "Eight seams glued: model and parameterization, packed anew."},
+                               .row = "eight seams glued"};
+    return exp_edited_show(run, page, claims, &figure);
 }
 
 int main(int argc, char **argv)

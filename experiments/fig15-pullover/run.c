@@ -3,12 +3,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "generators.h"
 #include "knit.h"
 #include "support/bake.h"
+#include "support/edited.h"
 #include "support/main.h"
-#include "support/pictures.h"
-#include "support/session.h"
 
 enum { WIDTH = 1600, HEIGHT = 760, TEXELS = 2048, ROWS_A_PAGE = 150, SEAMS = 6 };
 
@@ -74,7 +72,7 @@ static bool try_straight(exp_run *run, sl_session *session, const sl_action *a, 
 }
 
 /* Makes each run of border of a kind straight, from its first to its last vertex; returns how many. */
-static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *kind, double *length)
+static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *kind)
 {
     const sl_mesh *mesh = sl_session_mesh(session);
     int32_t done = 0;
@@ -88,9 +86,7 @@ static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *k
         if (kind(mesh, before)) {
             continue;
         }
-        double sum = sl_mesh_edge_length(mesh, h);
         for (last = border_next(mesh, h); kind(mesh, last); last = border_next(mesh, last)) {
-            sum += sl_mesh_edge_length(mesh, last);
             edges++;
         }
         int32_t item[4];
@@ -99,7 +95,6 @@ static int32_t straighten_runs(exp_run *run, sl_session *session, border_kind *k
         sl_session_name_corner(session, last, item + 2);
         if (edges > 1 && sl_action_set_items(&a, 4, item) == SL_OK && try_straight(run, session, &a, h)) {
             done++;
-            *length += sum;
         }
         sl_action_clear(&a);
     }
@@ -166,55 +161,37 @@ cleanup:
     return status;
 }
 
-static sl_status edit(exp_run *run, exp_page *page, exp_claims *claims, const sl_polygons *polygons)
+static sl_status edit(exp_editing *e)
 {
-    sl_status status = SL_OK;
-    sl_session *session = NULL;
-    sl_action open = sl_action_default(SL_ACTION_OPEN), pack = sl_action_default(SL_ACTION_PACK);
-    const sl_atlas_def def = exp_session_def();
-    const sl_view view = exp_view_of("pullover");
-    const sl_picture picture = exp_picture(run, WIDTH, HEIGHT);
-    exp_state state[2];
-    double zipper = 0.0, hems = 0.0;
-    SL_TRY(sl_session_create(polygons, NULL, &open, &def, &run->context, &session, &run->diag));
-    state[0] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "automatic.png"));
-    const int32_t glued = exp_session_glue(run, session, SEAMS, bound);
-    exp_claims_measure(claims, "pullover", "front opened", cut_front(run, session));
-    const int32_t sides = straighten_runs(run, session, is_zipper, &zipper);
-    const int32_t straight = straighten_runs(run, session, is_hem, &hems);
-    SL_TRY(sl_session_apply(session, &pack, &run->context, &run->diag));
-    state[1] = exp_session_state(session);
-    SL_TRY(exp_session_draw(run, session, &view, &picture, "straightened.png"));
-    SL_TRY(dress(run, session, &view, &picture));
-    SL_TRY(exp_session_finish(run, session, polygons, "pullover", &def, claims));
-    exp_claims_measure(claims, "pullover", "seams glued", glued);
-    exp_claims_measure(claims, "pullover", "sides of the zipper straight", sides);
-    exp_claims_measure(claims, "pullover", "hems straight", straight);
-    exp_claims_measure(claims, "pullover", "off the lines", worst_bend(session));
-    exp_claims_measure(claims, "pullover", "red facets", state[1].red);
-    exp_page_figure(page, "", "automatic.png", "the pullover and its automatic atlas", "The automatic atlas.");
-    exp_page_figure(page, "yes", "straightened.png", "the pullover with straight lines",
-                    "The front opened and straight on both sides, hems and cuffs straight (blue).");
-    exp_page_figure(page, "yes", "wool.png", "the pullover knitted, with a zipper",
-                    "A repetitive pattern (wool) in rows along the lines, and a zipper in its place.");
-    exp_session_table(page, 2, (const char *const[]){"automatic", "edited"}, state);
-cleanup:
-    sl_session_free(session);
-    return status;
+    exp_claims_measure(e->claims, "pullover", "seams glued", exp_session_glue(e->run, e->session, SEAMS, bound));
+    exp_claims_measure(e->claims, "pullover", "front opened", cut_front(e->run, e->session));
+    exp_claims_measure(e->claims, "pullover", "sides of the zipper straight",
+                       straighten_runs(e->run, e->session, is_zipper));
+    exp_claims_measure(e->claims, "pullover", "hems straight", straighten_runs(e->run, e->session, is_hem));
+    return SL_OK;
+}
+
+static sl_status finish(exp_editing *e)
+{
+    exp_claims_measure(e->claims, "pullover", "off the lines", worst_bend(e->session));
+    return dress(e->run, e->session, &e->view, &e->picture);
 }
 
 static sl_status show(exp_run *run, exp_page *page, exp_claims *claims)
 {
-    sl_status status = SL_OK;
-    sl_generated *pullover = NULL;
-    sl_polygons polygons;
-    SL_TRY(sl_generator_find("pullover")->make(1, run->quick ? 0 : 1, &pullover));
-    sl_generated_polygons(pullover, &polygons);
-    SL_TRY(edit(run, page, claims, &polygons));
-cleanup:
-    sl_generated_free(pullover);
-    return status;
+    const exp_edited figure = {
+        .model = "pullover",
+        .width = WIDTH,
+        .height = HEIGHT,
+        .edit = edit,
+        .finish = finish,
+        .before = {"automatic.png", "the pullover and its automatic atlas", "The automatic atlas."},
+        .after = {"straightened.png", "the pullover with straight lines",
+                  "The front opened and straight on both sides, hems and cuffs straight (blue)."},
+        .more = {"wool.png", "the pullover knitted, with a zipper",
+                 "A repetitive pattern (wool) in rows along the lines, and a zipper in its place."},
+        .row = "edited"};
+    return exp_edited_show(run, page, claims, &figure);
 }
 
 int main(int argc, char **argv)

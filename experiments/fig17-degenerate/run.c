@@ -1,4 +1,5 @@
 /* Figure 17: the paper's degenerate graph, its whole spectrum, and the eigenvector that the paper meant. */
+#include "support/csv.h"
 #include "support/main.h"
 
 #include <math.h>
@@ -118,37 +119,26 @@ static void part(const double v[NODES], double sign, double out[NODES])
 /* nodes.csv: a vector's value at every node of every panel; edges.csv: the graph once. */
 static sl_status write_nodes(exp_run *run, const double *const vector[], int32_t panels)
 {
-    char path[EXP_PATH];
     sl_writer *w = NULL;
-    sl_status status = exp_path(run, "nodes.csv", path);
-    if (status == SL_OK) {
-        status = sl_writer_create(path, &w, &run->diag);
-    }
-    if (status != SL_OK) {
-        return status;
-    }
-    sl_writer_text(w, "panel,node,x,y,half,value\n");
+    sl_status status = SL_OK;
+    SL_TRY(exp_csv_open(run, "nodes.csv", "panel,node,x,y,half,value", &w));
     for (int32_t k = 0; k < panels; k++) {
         for (int32_t i = 0; i < NODES; i++) {
             const double *p = place[i % N];
             sl_writer_format(w, "%d,%d,%g,%g,%d,%g\n", k, i + 1, i < N ? p[0] : -p[0], p[1], 1 + i / N, vector[k][i]);
         }
     }
-    return sl_writer_commit(w, &run->diag);
+    SL_TRY(exp_csv_close(run, &w));
+cleanup:
+    sl_writer_abandon(w);
+    return status;
 }
 
 static sl_status write_edges(exp_run *run, const sl_graph *g)
 {
-    char path[EXP_PATH];
     sl_writer *w = NULL;
-    sl_status status = exp_path(run, "edges.csv", path);
-    if (status == SL_OK) {
-        status = sl_writer_create(path, &w, &run->diag);
-    }
-    if (status != SL_OK) {
-        return status;
-    }
-    sl_writer_text(w, "across,x,y,dx,dy\n");
+    sl_status status = SL_OK;
+    SL_TRY(exp_csv_open(run, "edges.csv", "across,x,y,dx,dy", &w));
     for (int32_t i = 0; i < NODES; i++) {
         for (int32_t p = g->first[i]; p < g->first[i + 1]; p++) {
             const int32_t j = g->adj[p];
@@ -159,7 +149,10 @@ static sl_status write_edges(exp_run *run, const sl_graph *g)
             }
         }
     }
-    return sl_writer_commit(w, &run->diag);
+    SL_TRY(exp_csv_close(run, &w));
+cleanup:
+    sl_writer_abandon(w);
+    return status;
 }
 
 static void introduce(exp_page *page)

@@ -3,7 +3,7 @@
 #include "support/main.h"
 #include "support/pictures.h"
 #include "support/session.h"
-#include "zipper.h"
+#include "support/zipper.h"
 
 #include <math.h>
 #include <stdio.h>

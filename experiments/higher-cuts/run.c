@@ -1,5 +1,6 @@
 /* Higher eigenvectors: redundant, decorrelated, principal directions (Sec. 3.2 and 3.3). */
 #include "higher.h"
+#include "support/csv.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,12 +65,10 @@ static void write_vectors(vectors *out, const char *name, const exp_spectrum *s,
         const higher_vector *v = &vector[k - 1];
         out->sum[v->passes][k] += v->function;
         out->count[v->passes][k]++;
-        sl_writer_format(out->csv, "%s,%d,%d,", name, k, v->passes);
-        sl_writer_double(out->csv, v->function);
-        sl_writer_format(out->csv, ",%d,", v->of);
-        sl_writer_double(out->csv, v->along);
-        sl_writer_text(out->csv, ",");
-        sl_writer_double(out->csv, v->chance);
+        sl_writer_format(out->csv, "%s,%d,%d", name, k, v->passes);
+        exp_csv_numbers(out->csv, &v->function, 1);
+        sl_writer_format(out->csv, ",%d", v->of);
+        exp_csv_numbers(out->csv, (const double[]){v->along, v->chance}, 2);
         sl_writer_text(out->csv, "\n");
     }
 }
@@ -194,22 +193,19 @@ static sl_status write_means(exp_run *run, const vectors *v)
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "means.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "vector,passes,models,function\n");
+    SL_TRY(exp_csv_open(run, "means.csv", "vector,passes,models,function", &csv));
     for (int side = 0; side < 2; side++) {
         for (int32_t k = 2; k < HIGHER_VECTORS; k++) {
             if (v->count[side][k] > 0) {
-                sl_writer_format(csv, "%d,%d,%d,", k, side, v->count[side][k]);
-                sl_writer_double(csv, v->sum[side][k] / v->count[side][k]);
+                const double mean = v->sum[side][k] / v->count[side][k];
+                sl_writer_format(csv, "%d,%d,%d", k, side, v->count[side][k]);
+                exp_csv_numbers(csv, &mean, 1);
                 sl_writer_text(csv, "\n");
             }
         }
         sl_writer_text(csv, "\n\n");
     }
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;
@@ -219,16 +215,13 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
     vectors out = {0};
-    char path[EXP_PATH];
     exp_source *source = sl_alloc(EXP_MAX_MESHES, sizeof *source);
     row *r = sl_calloc(EXP_MAX_MESHES, sizeof *r);
     int32_t count = 0;
     if (source == NULL || r == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    SL_TRY(exp_path(run, "vectors.csv", path));
-    SL_TRY(sl_writer_create(path, &out.csv, &run->diag));
-    sl_writer_text(out.csv, "mesh,vector,passes,function,of,along,chance\n");
+    SL_TRY(exp_csv_open(run, "vectors.csv", "mesh,vector,passes,function,of,along,chance", &out.csv));
     SL_TRY(measure_all(run, &out, source, exp_list_sources(run, source), r, &count));
     introduce(page);
     conclude(page, claims, r, count);
@@ -238,8 +231,7 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
     exp_page_html(page, "</div>\n");
     table(page, r, count);
     SL_TRY(write_means(run, &out));
-    status = sl_writer_commit(out.csv, &run->diag);
-    out.csv = NULL;
+    SL_TRY(exp_csv_close(run, &out.csv));
 cleanup:
     sl_writer_abandon(out.csv);
     sl_free(source);

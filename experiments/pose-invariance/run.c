@@ -1,4 +1,5 @@
 /* Are seams the same over poses, noise and other meshes of one surface? */
+#include "support/csv.h"
 #include "support/pictures.h"
 #include "variants.h"
 
@@ -79,10 +80,8 @@ static void report(exp_page *page, exp_claims *claims, sl_writer *csv, const cha
     exp_page_cell(page, "%.0f %%", 100.0 * kept);
     exp_page_cell(page, "%.0f %%", 100.0 * (1.0 - new));
     exp_page_row_end(page);
-    sl_writer_format(csv, "%s,%s,%s,%d,", model, method_name[method], variant_name[which], now->charts);
-    sl_writer_double(csv, kept);
-    sl_writer_text(csv, ",");
-    sl_writer_double(csv, new);
+    sl_writer_format(csv, "%s,%s,%s,%d", model, method_name[method], variant_name[which], now->charts);
+    exp_csv_numbers(csv, (const double[]){kept, new}, 2);
     sl_writer_text(csv, "\n");
 }
 
@@ -131,19 +130,15 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
     const int count = run->quick ? 1 : MODELS;
-    SL_TRY(exp_path(run, "seams.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "model,method,variant,charts,kept,of_new\n");
+    SL_TRY(exp_csv_open(run, "seams.csv", "model,method,variant,charts,kept,of_new", &csv));
     exp_page_table_begin(page, "model|method|variant|charts|seams kept|seams new");
     for (int m = 0; m < count; m++) {
         SL_TRY(compare_variants(run, page, claims, csv, models[m]));
     }
     exp_page_table_end(page);
     show_pictures(page, count);
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;

@@ -1,5 +1,6 @@
 /* The paper's central claim, measured: every planted mirror of every model, what finds it and what cuts it. */
 #include "mirror.h"
+#include "support/csv.h"
 #include "support/main.h"
 
 #include <stdio.h>
@@ -156,25 +157,26 @@ static void summarise(exp_page *page, const table *t)
 static sl_status write_csv(exp_run *run, const table *t)
 {
     sl_status status = SL_OK;
-    sl_writer *writer = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "mirrors.csv", path));
-    SL_TRY(sl_writer_create(path, &writer, &run->diag));
-    sl_writer_text(writer, "model,facets,mirror,exact,straddling,found,used,saved,index,lambda,among_30,passes,"
-                           "seam_is_axis,undecided,longest,length_lambda,lookahead\n");
+    sl_writer *csv = NULL;
+    SL_TRY(
+        exp_csv_open(run, "mirrors.csv",
+                     "model,facets,mirror,exact,straddling,found,used,saved,index,lambda,among_30,passes,seam_is_axis,"
+                     "undecided,longest,length_lambda,lookahead",
+                     &csv));
     for (int32_t k = 0; k < t->count; k++) {
         const row *r = &t->row[k];
         const mirror_facts *f = &r->facts;
-        sl_writer_format(writer, "%s,%d,%s,%d,%d,%d,%d,", r->model, r->facets, r->mirror, r->exact, f->fixed, f->found,
+        sl_writer_format(csv, "%s,%d,%s,%d,%d,%d,%d", r->model, r->facets, r->mirror, r->exact, f->fixed, f->found,
                          f->used);
-        sl_writer_double(writer, r->saved);
-        sl_writer_format(writer, ",%d,", f->index);
-        sl_writer_double(writer, f->lambda);
-        sl_writer_format(writer, ",%d,%d,%d,%d,%d,%d,%d\n", f->among_usual, f->passes, f->exact_seam, f->undecided,
+        exp_csv_numbers(csv, &r->saved, 1);
+        sl_writer_format(csv, ",%d", f->index);
+        exp_csv_numbers(csv, &f->lambda, 1);
+        sl_writer_format(csv, ",%d,%d,%d,%d,%d,%d,%d\n", f->among_usual, f->passes, f->exact_seam, f->undecided,
                          f->chosen[0], f->chosen[1], f->chosen[2]);
     }
-    status = sl_writer_commit(writer, &run->diag);
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
+    sl_writer_abandon(csv);
     return status;
 }
 

@@ -34,6 +34,6 @@ set style fill solid 0.85 noborder
 set boxwidth 0.6
 stages = "eigenvectors symmetry flattening sewing packing rest"
 shades = "#1a7f4b #8a5fb5 #2f6fb5 #e0a030 #b3261e #9aa3ad"
-plot for [s = 1:6] 'shares.csv' skip 1 using ($1 + 1):(0.5*(column(2*s) + column(2*s + 1))):($1 + 0.7):($1 + 1.3):(column(2*s)):(column(2*s + 1)) \
+plot for [s = 1:6] 'timing-shares.csv' skip 1 using ($1 + 1):(0.5*(column(2*s) + column(2*s + 1))):($1 + 0.7):($1 + 1.3):(column(2*s)):(column(2*s + 1)) \
     with boxxyerror lc rgb word(shades, s) title word(stages, s)
 unset multiplot

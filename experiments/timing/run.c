@@ -1,5 +1,6 @@
 /* Time and memory against size, and where the time goes. */
 #include "generators.h"
+#include "support/csv.h"
 #include "support/main.h"
 
 #include <math.h>
@@ -9,8 +10,6 @@
 #include <sys/resource.h>
 
 enum { SPECTRUM, SYMMETRY, FLATTENING, SEWING, PACKING, REST, STAGES, MOST_SIZES = 12 };
-
-static const char *const stage_title[STAGES] = {"eigenvectors", "symmetry", "flattening", "sewing", "packing", "rest"};
 
 /* What the library calls its steps, and where they are counted. */
 static const struct {
@@ -134,14 +133,9 @@ static sl_status write_csv(exp_run *run, const row *r, int32_t count)
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "timings.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "model,facets,charts,seconds,megabytes");
-    for (int s = 0; s < STAGES; s++) {
-        sl_writer_format(csv, ",%s", stage_title[s]);
-    }
-    sl_writer_text(csv, "\n");
+    SL_TRY(exp_csv_open(run, "timings.csv",
+                        "model,facets,charts,seconds,megabytes,eigenvectors,symmetry,flattening,sewing,packing,rest",
+                        &csv));
     for (int32_t k = 0; k < count; k++) {
         sl_writer_format(csv, "%s,%d,%d,%.3f,%.0f", r[k].model, r[k].facets, r[k].charts, r[k].seconds, r[k].megabytes);
         for (int s = 0; s < STAGES; s++) {
@@ -149,8 +143,7 @@ static sl_status write_csv(exp_run *run, const row *r, int32_t count)
         }
         sl_writer_text(csv, "\n");
     }
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;
@@ -161,10 +154,7 @@ static sl_status write_shares(exp_run *run, const row *r, int32_t count)
 {
     sl_status status = SL_OK;
     sl_writer *csv = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "shares.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
-    sl_writer_text(csv, "model,low and high of each stage\n");
+    SL_TRY(exp_csv_open(run, "timing-shares.csv", "model,low and high of each stage", &csv));
     for (size_t m = 0; m < SL_COUNTOF(models); m++) {
         double spent[STAGES] = {0}, all = 1e-9, done = 0.0;
         for (int32_t k = 0; k < count; k++) {
@@ -180,8 +170,7 @@ static sl_status write_shares(exp_run *run, const row *r, int32_t count)
         }
         sl_writer_text(csv, "\n");
     }
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
+    SL_TRY(exp_csv_close(run, &csv));
 cleanup:
     sl_writer_abandon(csv);
     return status;

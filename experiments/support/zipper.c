@@ -1,4 +1,4 @@
-#include "zipper.h"
+#include "support/zipper.h"
 
 #include <string.h>
 
