@@ -105,4 +105,5 @@ void cli_segment_apply(cli_segment_options *o)
     o->optimize.protect = (sl_protect)o->protect;
     o->optimize.weights = o->weights ? o->optimize.weights : sl_seam_cost_none();
     o->optimize.max_stretch = o->def.flatten.max_stretch;
+    o->optimize.max_angle = o->def.flatten.max_angle;
 }

@@ -17,6 +17,8 @@ typedef struct pool {
     sl_opt_trial *trial;
     int32_t *stamp; /* of the chart that each is for */
     int64_t count, capacity, stamp_capacity;
+    int32_t *parted; /* stamps of the charts whose parting was tried */
+    int64_t nparted, parted_capacity;
 } pool;
 
 static void pool_clear(pool *p)
@@ -26,6 +28,7 @@ static void pool_clear(pool *p)
     }
     sl_free(p->trial);
     sl_free(p->stamp);
+    sl_free(p->parted);
 }
 
 static void drop(pool *p, int64_t k)
@@ -149,17 +152,46 @@ static double score(const sl_opt_state *state, const sl_opt_trial *trial, double
     return fmin(gain, wanted) / (CUT_PRICE + price);
 }
 
+/* Are the atlas's targets met, and only some charts beyond what one may be? */
+static bool only_charts_missed(const sl_opt_state *state)
+{
+    sl_opt_total total;
+    sl_opt_totals(state, &total);
+    return total.stretch <= state->def->target_stretch && total.angle <= state->def->target_angle;
+}
+
+/* A chart that a dart did not help may be held back by its own border: once for each, parting it is a candidate. */
+static sl_status add_parting(const sl_opt_state *state, int32_t c, pool *p)
+{
+    sl_status status = SL_OK;
+    const int32_t stamp = state->chart[c].stamp;
+    for (int64_t k = 0; k < p->nparted; k++) {
+        if (p->parted[k] == stamp) {
+            return SL_OK;
+        }
+    }
+    SL_TRY(sl_reserve((void **)&p->parted, &p->parted_capacity, p->nparted + 1, sizeof *p->parted));
+    SL_TRY(sl_reserve((void **)&p->trial, &p->capacity, p->count + 1, sizeof *p->trial));
+    SL_TRY(sl_reserve((void **)&p->stamp, &p->stamp_capacity, p->count + 1, sizeof *p->stamp));
+    p->parted[p->nparted++] = p->stamp[p->count] = stamp;
+    SL_TRY(sl_opt_part(state, c, &p->trial[p->count++]));
+cleanup:
+    return status;
+}
+
 /* The best candidate, solved to the end; *taken = -1 = none is left. */
 static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
 {
     sl_status status = SL_OK;
     const double wanted = need(state);
+    const bool focus = only_charts_missed(state);
     *taken = -1;
     while (*taken < 0) {
         int64_t best = -1;
         double most = 0.0;
         for (int64_t k = 0; k < p->count; k++) {
-            const double s = score(state, &p->trial[k], wanted);
+            const bool counts = !focus || !sl_opt_chart_within(state, &state->chart[p->trial[k].old[0]].sums);
+            const double s = counts ? score(state, &p->trial[k], wanted) : 0.0;
             best = s > most ? k : best;
             most = fmax(s, most);
         }
@@ -168,8 +200,12 @@ static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
         }
         if (p->trial[best].settled) {
             *taken = best;
-        } else { /* it may be worth less than the probe promised, or overlap: then others come first */
-            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
+            continue;
+        }
+        /* it may be worth less than the probe promised, or overlap: then others come first */
+        SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
+        if (!(score(state, &p->trial[best], wanted) > 0.0)) {
+            SL_TRY(add_parting(state, p->trial[best].old[0], p));
         }
     }
 cleanup:

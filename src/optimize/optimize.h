@@ -23,6 +23,7 @@ typedef struct sl_optimize_def {
     double target_stretch; /* the atlas's L2 after one scale, at least 1; default 1.05 */
     double target_angle;   /* its area-weighted mean of s1/s2, at least 1; default 1.2 */
     double max_stretch;    /* L2 of any one chart; default 1.5 */
+    double max_angle;      /* mean s1/s2 of any one chart; default 1.75 */
     double chart_cost;     /* what a chart is worth in seam length over sqrt(area); default 0.3 */
     double seam_cost;      /* what seam length is worth in itself; 0 = only charts count; default 1 */
     double start_stretch;  /* L2 above which the first cuts recurse; default 2.5 */

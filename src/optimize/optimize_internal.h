@@ -83,6 +83,7 @@ typedef struct sl_opt_total {
     double stretch, angle; /* L2 and mean s1/s2 */
     double length;         /* of the seams over sqrt(area) */
     double worst;          /* L2 of the worst chart */
+    bool charts_within;    /* every chart is within what one may be */
 } sl_opt_total;
 
 SL_NODISCARD sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def *def,
@@ -92,6 +93,8 @@ void sl_opt_state_clear(sl_opt_state *state);
 SL_NODISCARD sl_status sl_opt_state_copy(const sl_opt_state *state, sl_opt_state *out);
 void sl_opt_totals(const sl_opt_state *state, sl_opt_total *out);
 bool sl_opt_within(const sl_opt_state *state, const sl_opt_total *total);
+/* Within max_stretch and max_angle? */
+bool sl_opt_chart_within(const sl_opt_state *state, const sl_opt_sums *sums);
 /* Chooses what stretch and shear weigh from how far each is from its target. */
 void sl_opt_weigh(sl_opt_state *state);
 double sl_opt_loss(const sl_opt_state *state, const sl_opt_sums *sums);
@@ -157,6 +160,10 @@ SL_NODISCARD sl_status sl_opt_candidates(const sl_opt_state *state, int32_t c, s
 
 /* Two smoothed spectral bisections of chart c, appended. */
 SL_NODISCARD sl_status sl_opt_bisections(const sl_opt_state *state, int32_t c, sl_opt_trial *list, int32_t *count);
+
+/* Parts chart c, once its map overlaps when the border is let go, along minimum cuts between what lies on each other;
+ * the trial (to be cleared after failure, too) is settled, or not valid. */
+SL_NODISCARD sl_status sl_opt_part(const sl_opt_state *state, int32_t c, sl_opt_trial *trial);
 
 /* Cuts greedily until the targets are met. */
 SL_NODISCARD sl_status sl_opt_cut(sl_opt_state *state);

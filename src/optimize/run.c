@@ -17,6 +17,7 @@ sl_optimize_def sl_optimize_default(void)
     return (sl_optimize_def){.target_stretch = 1.05,
                              .target_angle = 1.2,
                              .max_stretch = 1.5,
+                             .max_angle = 1.75,
                              .chart_cost = 0.3,
                              .seam_cost = 1.0,
                              .start_stretch = 2.5,
@@ -230,6 +231,7 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
     with.edge_weight = weight;
     with.sew = false;
     with.flatten.max_stretch = def->max_stretch;
+    with.flatten.max_angle = def->max_angle;
     status = sl_segment(mesh, triangulation, &with, context, out);
     sl_free(weight);
     if (status == SL_OK && info != NULL) {

@@ -136,7 +136,7 @@ static void judge(const sl_opt_state *state, const sl_opt_trial *t, double *larg
         const sl_opt_sums *sums = &t->to[k].sums;
         q += sl_opt_stretch(sums) / state->surface->total;
         r += sums->shear / state->surface->total;
-        if (sums->space > 0.0 && 1.0 + sl_opt_stretch(sums) / sums->space > def->max_stretch) {
+        if (!sl_opt_chart_within(state, sums)) {
             return;
         }
     }

@@ -68,12 +68,15 @@ void sl_opt_totals(const sl_opt_state *state, sl_opt_total *out)
 {
     const sl_opt_surface *s = state->surface;
     double stretch = 0.0, shear = 0.0, length = 0.0;
-    *out = (sl_opt_total){.worst = 1.0};
+    *out = (sl_opt_total){.worst = 1.0, .charts_within = true};
     for (int64_t c = 0; c < state->nchart; c++) {
         const sl_opt_sums *sums = &state->chart[c].sums;
         stretch += sl_opt_stretch(sums);
         shear += sums->shear;
         out->worst = sums->space > 0.0 ? fmax(out->worst, 1.0 + sl_opt_stretch(sums) / sums->space) : out->worst;
+    }
+    for (int64_t c = 0; c < state->nchart; c++) {
+        out->charts_within = out->charts_within && sl_opt_chart_within(state, &state->chart[c].sums);
     }
     for (int32_t c = 0; c < 3 * s->patch->nt; c++) {
         length += state->cut[c] != 0 && s->patch->twin[c] > c ? s->length[c] : 0.0;
@@ -86,8 +89,14 @@ void sl_opt_totals(const sl_opt_state *state, sl_opt_total *out)
 bool sl_opt_within(const sl_opt_state *state, const sl_opt_total *total)
 {
     const sl_optimize_def *def = state->def;
-    return total->stretch <= def->target_stretch && total->angle <= def->target_angle &&
-           total->worst <= def->max_stretch;
+    return total->stretch <= def->target_stretch && total->angle <= def->target_angle && total->charts_within;
+}
+
+bool sl_opt_chart_within(const sl_opt_state *state, const sl_opt_sums *sums)
+{
+    const sl_optimize_def *def = state->def;
+    return !(sums->space > 0.0) || (1.0 + sl_opt_stretch(sums) / sums->space <= def->max_stretch &&
+                                    1.0 + sums->shear / sums->space <= def->max_angle);
 }
 
 /* A loss of 1 is a whole budget: a target that is met weighs less, but something, since energy trades one for the
