@@ -1,5 +1,7 @@
 #include "support/main.h"
 
+#include "support/failures.h"
+
 int exp_main(int argc, char **argv, const char *folder, const char *heading, const char *introduction,
              const char *expected, exp_show_fn *show)
 {
@@ -17,7 +19,8 @@ int exp_main(int argc, char **argv, const char *folder, const char *heading, con
         exp_page_html(&page, "<p>%s</p>\n", introduction);
     }
     SL_TRY(show(&run, &page, &claims));
-    broken = exp_claims_report(&claims, &run, &page);
+    broken = exp_failures_show(&run, &page);
+    broken += exp_claims_report(&claims, &run, &page);
     exp_page_html(&page, "<p class=\"quiet\">This alone: <code>experiments/reproduce %s</code></p>\n", folder);
     SL_TRY(exp_page_close(&run, &page));
     SL_TRY(exp_claims_write(&claims, &run, folder, heading));

@@ -67,7 +67,7 @@ sl_status exp_mesh_load(const exp_source *source, exp_mesh *mesh, sl_diag *diag)
             sl_meshfile_polygons(mesh->file, &mesh->polygons);
         }
     }
-    return status;
+    return status == SL_IO ? SL_BAD_INPUT : status;
 }
 
 void exp_mesh_clear(exp_mesh *mesh)

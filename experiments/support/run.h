@@ -1,4 +1,5 @@
-/* What every experiment is started with: [--quick] OUTDIR [CORPUS_FOLDER], and the meshes it runs on.
+/* What every experiment is started with: [--quick] OUTDIR [CORPUS_FOLDER] [--add NAME=FILE]..., and the meshes it
+ * runs on.
  * Layer: experiments (public headers and datasets-gen only). */
 #ifndef SL_EXPERIMENTS_RUN_H
 #define SL_EXPERIMENTS_RUN_H
@@ -6,7 +7,18 @@
 #include "draw/camera.h"
 #include "seamlab.h"
 
-enum { EXP_MAX_MESHES = 256, EXP_PATH = 1024 };
+enum { EXP_MAX_MESHES = 256, EXP_PATH = 1024, EXP_MAX_FAILURES = 256, EXP_MAX_ADDED = 32 };
+
+/* A model, or a method on it, that failed: see exp_failed. */
+typedef struct exp_failure {
+    char name[96], reason[512];
+} exp_failure;
+
+/* An atlas of another tool: --add NAME=FILE. */
+typedef struct exp_added {
+    char name[48]; /* of the tool */
+    char path[EXP_PATH];
+} exp_added;
 
 typedef struct exp_run {
     bool quick;
@@ -15,6 +27,10 @@ typedef struct exp_run {
     sl_thread_pool *pool;
     sl_context context;
     sl_diag diag;
+    int32_t failed; /* may be more than are kept */
+    exp_failure failure[EXP_MAX_FAILURES];
+    int32_t added;
+    exp_added add[EXP_MAX_ADDED];
 } exp_run;
 
 /* Parses the command line and starts the workers; false (and a line on stderr) when it is wrong. */
@@ -46,6 +62,8 @@ typedef struct exp_mesh {
     sl_meshfile *file;
 } exp_mesh;
 
+/* A file that cannot be read is SL_BAD_INPUT, too: the mesh is at fault, not the experiment. Cleared by exp_mesh_clear,
+ * also after failure. */
 SL_NODISCARD sl_status exp_mesh_load(const exp_source *source, exp_mesh *mesh, sl_diag *diag);
 void exp_mesh_clear(exp_mesh *mesh);
 
