@@ -33,7 +33,8 @@ install_packages() {
     }
 }
 
-# build_into FOLDER [meson options]: configures (again, if need be) and builds; output only when it fails.
+# build_into FOLDER [meson options]: configures (again, if need be) and builds $build_target (everything where it is not
+# set); output only when it fails.
 build_into() {
     local folder=$1 log
     shift
@@ -42,7 +43,7 @@ build_into() {
     if [ ! -f "$folder/build.ninja" ]; then
         meson setup "$folder" "$root" "$@" >"$log" 2>&1 || { cat "$log"; return 1; }
     fi
-    ninja -C "$folder" >"$log" 2>&1 || { tail -n 60 "$log"; return 1; }
+    ninja -C "$folder" ${build_target:-} >"$log" 2>&1 || { tail -n 60 "$log"; return 1; }
 }
 
 # A build folder outside the tree's view of git: $SEAMLAB_BUILD or build/ in the checkout.

@@ -134,7 +134,7 @@ static void show(exp_page *page, exp_claims *claims, const form *forms)
         exp_page_cell(page, "%d", f->thin);
         exp_page_cell(page, "%d", f->fallbacks);
         exp_page_cell(page, "%.3f", f->distortion / n);
-        exp_page_cell(page, "%.2f", f->cpu);
+        exp_page_time(page, "%.2f", f->cpu);
         exp_page_row_end(page);
         exp_claims_measure(claims, f->name, "charts", f->charts);
         exp_claims_measure(claims, f->name, "share converged", (double)f->converged / (f->charts > 0 ? f->charts : 1));

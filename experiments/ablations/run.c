@@ -187,9 +187,10 @@ static void table(exp_page *page, exp_claims *claims, const change *c, const mod
         exp_page_row_begin(page, failed > 0);
         exp_page_cell(page, "%s", c[k].what);
         exp_page_cell(page, "%.1f", mean_charts(m, count, k));
-        for (int metric = 0; metric < METRICS; metric++) {
+        for (int metric = 0; metric < SECONDS; metric++) {
             exp_page_cell(page, "%.2f", median_ratio(m, count, k, metric));
         }
+        exp_page_time(page, "%.2f", median_ratio(m, count, k, SECONDS));
         exp_page_cell(page, "%d", failed);
         exp_page_row_end(page);
         exp_claims_measure(claims, c[k].name, "failed models", failed);

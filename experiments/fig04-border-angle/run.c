@@ -90,7 +90,7 @@ static void table_of(exp_page *page, exp_claims *claims, const char *name, const
         exp_page_cell(page, "%d", s->info.quality.flipped);
         exp_page_cell(page, "%d", s->crossings);
         exp_page_cell(page, "%.3f", s->distortion.angle_mean);
-        exp_page_cell(page, "%.1f", 1e3 * s->cpu);
+        exp_page_time(page, "%.1f", 1e3 * s->cpu);
         exp_page_cell(page, "%d", drags[k].released.iterations);
         exp_page_cell(page, rest->floor ? "%.1e (rounding floor)" : "%.1e", rest->gradient);
         exp_page_cell(page, "%.1e", rest_residual);

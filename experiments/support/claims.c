@@ -90,6 +90,11 @@ bool exp_claims_measure(exp_claims *claims, const char *mesh, const char *quanti
     return kept;
 }
 
+bool exp_claim_is_time(const exp_claim *claim)
+{
+    return strstr(claim->quantity, "seconds") != NULL;
+}
+
 bool exp_claim_broken(const exp_claim *claim)
 {
     return claim->violated > 0 || claim->measured == 0;
@@ -111,10 +116,12 @@ int32_t exp_claims_report(const exp_claims *claims, const exp_run *run, exp_page
         exp_page_cell(page, "%s", c->quantity);
         exp_page_cell(page, "%s", strcmp(c->mesh, "*") == 0 ? "all" : c->mesh);
         exp_page_cell(page, "%s %g", c->relation[0] == '<' ? "&le;" : c->relation[0] == '>' ? "&ge;" : "=", c->bound);
-        if (c->measured > 0) {
-            exp_page_cell(page, "%.6g (%s)", c->worst, c->worst_mesh);
-        } else {
+        if (c->measured == 0) {
             exp_page_cell(page, "never");
+        } else if (exp_claim_is_time(c)) {
+            exp_page_time(page, "%.6g (%s)", c->worst, c->worst_mesh);
+        } else {
+            exp_page_cell(page, "%.6g (%s)", c->worst, c->worst_mesh);
         }
         exp_page_cell(page, "%d", c->measured);
         exp_page_cell(page, bad ? "<b>violated</b>" : "holds");

@@ -33,6 +33,9 @@ void exp_claims_clear(exp_claims *claims);
 /* Holds a measurement against every claim about it; false when it breaks one. */
 bool exp_claims_measure(exp_claims *claims, const char *mesh, const char *quantity, double value);
 
+/* Whether it is about a time, a quantity of seconds: what was measured differs from run to run. */
+bool exp_claim_is_time(const exp_claim *claim);
+
 /* Whether it is broken: applied and violated, or never measured although it applies. */
 bool exp_claim_broken(const exp_claim *claim);
 

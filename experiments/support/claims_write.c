@@ -37,7 +37,7 @@ static void overview_row(exp_page *page, const exp_claim *c, const char *folder,
     exp_page_html(page, "<tr%s><td><a href=\"#%s\">%s</a></td><td class=\"says\">", bad ? " class=\"bad\"" : "", folder,
                   name);
     exp_page_text(page, c->says);
-    exp_page_html(page, "</td><td class=\"says\">");
+    exp_page_html(page, "</td><td class=\"%s\">", exp_claim_is_time(c) ? "says time" : "says");
     exp_page_text(page, c->quantity);
     if (strcmp(c->mesh, "*") != 0) {
         exp_page_html(page, " of %s", c->mesh);

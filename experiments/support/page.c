@@ -101,6 +101,16 @@ void exp_page_cell(exp_page *page, const char *format, ...)
     va_end(args);
 }
 
+void exp_page_time(exp_page *page, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    sl_writer_text(page->writer, "<td class=\"time\">");
+    write_formatted(page, format, args);
+    sl_writer_text(page->writer, "</td>");
+    va_end(args);
+}
+
 void exp_page_row_end(exp_page *page)
 {
     exp_page_html(page, "</tr>\n");

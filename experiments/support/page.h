@@ -28,6 +28,10 @@ void exp_page_figure(exp_page *page, const char *class_name, const char *file, c
 void exp_page_table_begin(exp_page *page, const char *header);
 void exp_page_row_begin(exp_page *page, bool bad);
 void exp_page_cell(exp_page *page, const char *format, ...) SL_PRINTF(2, 3);
+
+/* A cell with a time or a peak of memory: what differs from run to run stands in such cells (class "time") and, as
+ * numbers, in files named timing*; all else is the same bytes (tests/experiments/twice.sh compares). */
+void exp_page_time(exp_page *page, const char *format, ...) SL_PRINTF(2, 3);
 void exp_page_row_end(exp_page *page);
 void exp_page_table_end(exp_page *page);
 

@@ -145,7 +145,7 @@ void exp_solution_row(exp_page *page, exp_claims *claims, const char *name, cons
     exp_page_cell(page, "%d", s->info.quality.flipped);
     exp_page_cell(page, "%.3f", s->distortion.angle_mean);
     exp_page_cell(page, "%.3f", s->distortion.l2);
-    exp_page_cell(page, "%.0f", 1e3 * s->cpu);
+    exp_page_time(page, "%.0f", 1e3 * s->cpu);
     exp_page_row_end(page);
     fprintf(stderr, "%s %s: %d iterations, %d solves, reached %.2f, |g| %.1e, line %.1e, angle %.1e, s1/s2 %.3f\n",
             name, what, s->info.iterations, s->info.solves, s->info.reached, abf->gradient, s->line, s->angle,

@@ -118,11 +118,11 @@ static void table(exp_page *page, const row *r, int32_t count)
         exp_page_row_begin(page, false);
         exp_page_cell(page, "%s", r[k].model);
         exp_page_cell(page, "%d", r[k].facets);
-        exp_page_cell(page, "%.2f", r[k].seconds);
-        exp_page_cell(page, "%.0f", r[k].megabytes);
+        exp_page_time(page, "%.2f", r[k].seconds);
+        exp_page_time(page, "%.0f", r[k].megabytes);
         exp_page_cell(page, "%d", r[k].charts);
         for (int s = 0; s < STAGES; s++) {
-            exp_page_cell(page, "%.0f %%", 100.0 * r[k].spent[s] / fmax(r[k].seconds, 1e-9));
+            exp_page_time(page, "%.0f %%", 100.0 * r[k].spent[s] / fmax(r[k].seconds, 1e-9));
         }
         exp_page_row_end(page);
     }
