@@ -41,6 +41,7 @@ typedef struct sl_optimize_info {
     int32_t pieces, failed; /* cut here; left to the recursion because no valid start was found */
     int32_t missed;         /* pieces whose targets were not met */
     int32_t cuts, sewings;  /* accepted */
+    int32_t straightened;   /* parts of seams that were laid anew */
     int32_t trials;         /* candidate cuts and sewings solved */
 } sl_optimize_info;
 

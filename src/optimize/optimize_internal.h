@@ -104,6 +104,7 @@ typedef struct sl_opt_trial {
     int32_t *edge; /* nedge halfedges, one an edge; owned */
     int32_t nedge;
     bool sew;         /* else they are cut */
+    int32_t nback;    /* ... but for the first so many, which are sewn: a seam moves */
     int32_t old[2];   /* charts that it replaces; -1 = only one */
     sl_opt_chart *to; /* nto, owned */
     int32_t nto;
@@ -121,6 +122,10 @@ void sl_opt_trial_clear(sl_opt_trial *trial);
 
 /* Extracts the charts that come of a trial, with the UVs at hand. trial->valid = false where one is no disk. */
 SL_NODISCARD sl_status sl_opt_trial_make(const sl_opt_state *state, sl_opt_trial *trial);
+
+/* Shares of the two budgets that the atlas takes as it is (trial = NULL), or would take with the trial: the larger and
+ * the geometric mean; HUGE_VAL where the trial is not valid or a chart of it beyond max_stretch. */
+void sl_opt_shares(const sl_opt_state *state, const sl_opt_trial *trial, double *largest, double *mean);
 
 /* A few Newton steps for ranking a cut. */
 SL_NODISCARD sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_trial *trial);
@@ -189,6 +194,10 @@ double sl_opt_align(const sl_opt_state *state, const sl_opt_trial *trial, double
 
 /* Sews greedily while the targets stay met. */
 SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);
+
+/* Lays parts of seams anew where a way that is cheaper and turns less leads between the same ends and the targets stay
+ * met. */
+SL_NODISCARD sl_status sl_opt_straighten(sl_opt_state *state);
 
 /* The first charts: spectral cuts of the surface's mesh, recursing where one fails or exceeds def->start_stretch.
  * *started = false where none was found. */

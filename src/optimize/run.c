@@ -30,7 +30,7 @@ sl_optimize_def sl_optimize_default(void)
 /* What the pieces report to, side by side: sums of whole numbers do not depend on the order. */
 typedef struct optimizer {
     const sl_optimize_def *def;
-    atomic_int pieces, missed, cuts, sewings, trials;
+    atomic_int pieces, missed, cuts, sewings, straightened, trials;
 } optimizer;
 
 /* The scale at which a chart adds least to the atlas's L2: I and a agree. */
@@ -77,6 +77,7 @@ static sl_status search(sl_opt_state *state)
             break; /* sewing came to its end with these charts */
         }
         SL_TRY(sl_opt_sew(state));
+        SL_TRY(sl_opt_straighten(state));
         const double now = price(state);
         if (!(now < best)) {
             break;
@@ -207,6 +208,7 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
     o->pieces++;
     o->cuts += state.info.cuts;
     o->sewings += state.info.sewings;
+    o->straightened += state.info.straightened;
     o->trials += state.info.trials;
 cleanup:
     sl_opt_state_clear(&state);
@@ -240,6 +242,7 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
                                    .missed = o.missed,
                                    .cuts = o.cuts,
                                    .sewings = o.sewings,
+                                   .straightened = o.straightened,
                                    .trials = o.trials};
         for (int32_t k = 0; k < (*out)->nsplit; k++) {
             info->failed -= (*out)->split[k].optimised;

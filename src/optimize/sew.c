@@ -115,37 +115,6 @@ static void settle_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     }
 }
 
-/* Shares of the two budgets as they would be, the larger and the geometric mean; HUGE_VAL where it is no candidate. */
-static void judge(const sl_opt_state *state, const sl_opt_trial *t, double *largest, double *mean)
-{
-    const sl_optimize_def *def = state->def;
-    sl_opt_total total;
-    *largest = *mean = HUGE_VAL;
-    if (!t->valid) {
-        return;
-    }
-    sl_opt_totals(state, &total);
-    double q = total.stretch - 1.0, r = total.angle - 1.0;
-    for (int j = 0; j < 2; j++) {
-        if (t->old[j] >= 0) {
-            q -= sl_opt_stretch(&state->chart[t->old[j]].sums) / state->surface->total;
-            r -= state->chart[t->old[j]].sums.shear / state->surface->total;
-        }
-    }
-    for (int32_t k = 0; k < t->nto; k++) {
-        const sl_opt_sums *sums = &t->to[k].sums;
-        q += sl_opt_stretch(sums) / state->surface->total;
-        r += sums->shear / state->surface->total;
-        if (!sl_opt_chart_within(state, sums)) {
-            return;
-        }
-    }
-    q /= fmax(def->target_stretch - 1.0, 1e-9);
-    r /= fmax(def->target_angle - 1.0, 1e-9);
-    *largest = fmax(q, r);
-    *mean = sqrt(fmax(q, 0.0) * fmax(r, 0.0));
-}
-
 /* Applies the trial; where only another weight of the energy could keep the targets met, tries that, and puts all back
  * if it does not. */
 static sl_status accept(sewing *s, sl_opt_trial *t, double largest, bool *accepted)
@@ -194,7 +163,7 @@ static sl_status try_batch(sewing *s, int32_t *count, int32_t *tried, bool *prog
     for (int32_t k = 0; k < n; k++) {
         SL_TRY(batch[k]->status);
         *tried += !batch[k]->dropped;
-        judge(s->state, batch[k], &largest[k], &mean[k]);
+        sl_opt_shares(s->state, batch[k], &largest[k], &mean[k]);
         const bool hope = largest[k] <= 1.0 || mean[k] <= HOPE;
         worth[k] = hope ? saving(s->state, batch[k]) / (0.05 + mean[k]) : 0.0;
         if (!hope) {

@@ -99,6 +99,36 @@ bool sl_opt_chart_within(const sl_opt_state *state, const sl_opt_sums *sums)
                                     1.0 + sums->shear / sums->space <= def->max_angle);
 }
 
+void sl_opt_shares(const sl_opt_state *state, const sl_opt_trial *t, double *largest, double *mean)
+{
+    const sl_optimize_def *def = state->def;
+    sl_opt_total total;
+    *largest = *mean = HUGE_VAL;
+    if (t != NULL && !t->valid) {
+        return;
+    }
+    sl_opt_totals(state, &total);
+    double q = total.stretch - 1.0, r = total.angle - 1.0;
+    for (int j = 0; t != NULL && j < 2; j++) {
+        if (t->old[j] >= 0) {
+            q -= sl_opt_stretch(&state->chart[t->old[j]].sums) / state->surface->total;
+            r -= state->chart[t->old[j]].sums.shear / state->surface->total;
+        }
+    }
+    for (int32_t k = 0; t != NULL && k < t->nto; k++) {
+        const sl_opt_sums *sums = &t->to[k].sums;
+        q += sl_opt_stretch(sums) / state->surface->total;
+        r += sums->shear / state->surface->total;
+        if (!sl_opt_chart_within(state, sums)) {
+            return;
+        }
+    }
+    q /= fmax(def->target_stretch - 1.0, 1e-9);
+    r /= fmax(def->target_angle - 1.0, 1e-9);
+    *largest = fmax(q, r);
+    *mean = sqrt(fmax(q, 0.0) * fmax(r, 0.0));
+}
+
 /* A loss of 1 is a whole budget: a target that is met weighs less, but something, since energy trades one for the
  * other. */
 void sl_opt_weigh(sl_opt_state *state)
@@ -153,7 +183,7 @@ sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial)
         return status;
     }
     for (int32_t k = 0; k < trial->nedge; k++) {
-        state->cut[trial->edge[k]] = state->cut[twin[trial->edge[k]]] = trial->sew ? 0 : 1;
+        state->cut[trial->edge[k]] = state->cut[twin[trial->edge[k]]] = trial->sew || k < trial->nback ? 0 : 1;
     }
     int32_t k = 0;
     for (int32_t j = 0; j < 2; j++) {

@@ -52,7 +52,7 @@ static sl_status making_init(const sl_opt_state *state, const sl_opt_trial *tria
     }
     memset(m->local, 0xff, (size_t)whole->nt * sizeof *m->local);
     for (int32_t k = 0; k < trial->nedge; k++) {
-        m->cut[trial->edge[k]] = m->cut[whole->twin[trial->edge[k]]] = trial->sew ? 0 : 1;
+        m->cut[trial->edge[k]] = m->cut[whole->twin[trial->edge[k]]] = trial->sew || k < trial->nback ? 0 : 1;
     }
     return SL_OK;
 }
