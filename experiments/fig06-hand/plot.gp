@@ -9,7 +9,7 @@ set xlabel 'eigenvector' textcolor rgb '#333840'
 set ylabel 'eigenvalue of D - A' textcolor rgb '#333840'
 set xrange [-0.5:29.5]
 set yrange [0:*]
-do for [name in "hand corpus-hand"] {
+do for [name in "hand hand-curled hand-fist corpus-hand"] {
     if (system(sprintf("test -s %s.csv && echo 1 || echo 0", name)) eq '1') {
         set output name.'.svg'
         plot name.'.csv' skip 1 using 1:2 with impulses lw 1 lc rgb '#c5cad1' notitle, \

@@ -13,15 +13,22 @@ static void caption_vector(const hand_work *w, int32_t k, char *text, size_t siz
         return;
     }
     const sl_cut_candidate *c = &w->s.candidate[k - 1];
+    char why[96] = "passes";
+    if (!c->passes) {
+        snprintf(why, sizeof why, "filtered out: %s%s in pieces", c->positive_parts > 1 ? "red" : "",
+                 c->positive_parts > 1 && c->negative_parts > 1 ? " and blue"
+                 : c->negative_parts > 1                        ? "blue"
+                                                                : "");
+    }
     snprintf(text, size, "v<sub>%d</sub>, &lambda; = %.3e<br>%d + %d parts, seam %.2f<br><b>%s</b>", k,
              w->s.spectrum->lambda[k], c->positive_parts, c->negative_parts,
-             c->seam_length / sl_mesh_diagonal(w->s.mesh), c->passes ? "passes" : "filtered out");
+             c->seam_length / sl_mesh_diagonal(w->s.mesh), why);
 }
 
 static sl_status show_vectors(exp_run *run, exp_page *page, const hand_work *w)
 {
     sl_status status = SL_OK;
-    const sl_view view = exp_view_of("hand");
+    const sl_view view = hand_view(w->pose, false);
     const sl_picture picture = exp_picture(run, VECTOR_WIDTH, VECTOR_HEIGHT);
     uint8_t *side = sl_alloc(w->s.graph->graph.n, sizeof *side);
     double *value = sl_alloc(w->s.mesh->nf, sizeof *value);
@@ -32,8 +39,8 @@ static sl_status show_vectors(exp_run *run, exp_page *page, const hand_work *w)
     exp_page_html(page, "<div class=\"grid\">\n");
     for (int32_t k = 0; k < w->s.spectrum->count; k++) {
         char file[64], alt[64], caption[256];
-        snprintf(file, sizeof file, "%s-v%02d.png", w->tag, k);
-        snprintf(alt, sizeof alt, "eigenvector %d of the %s", k, w->title);
+        snprintf(file, sizeof file, "%s-v%02d.png", w->pose->tag, k);
+        snprintf(alt, sizeof alt, "eigenvector %d of the %s", k, w->pose->title);
         caption_vector(w, k, caption, sizeof caption);
         exp_spectrum_values(&w->s, k, value);
         edges = exp_spectrum_seam(&w->s, k, side, edge);
@@ -48,7 +55,7 @@ cleanup:
     return status;
 }
 
-static void show_findings(exp_page *page, const hand_work *w, int32_t passing)
+static void show_findings(exp_page *page, const hand_work *w)
 {
     char list[256] = "";
     size_t at = 0;
@@ -61,47 +68,53 @@ static void show_findings(exp_page *page, const hand_work *w, int32_t passing)
         page,
         "<p>%d facets, %d eigenvectors, largest residual %.1e. The connectivity filter keeps %d of %d: %s. The "
         "others oscillate along directions already found: more than two nodal parts.</p>\n",
-        w->s.face_count, w->s.spectrum->count, w->s.spectrum->info.max_residual, passing, w->s.spectrum->count - 1,
+        w->s.face_count, w->s.spectrum->count, w->s.spectrum->info.max_residual, w->passing, w->s.spectrum->count - 1,
         list);
 }
 
-static void measure_spectrum(exp_claims *claims, const hand_work *w, int32_t *passing)
+static void measure_spectrum(exp_claims *claims, hand_work *w)
 {
     double beyond = -HUGE_VAL;
-    *passing = 0;
+    w->passing = 0;
     for (int32_t k = 1; k < w->s.spectrum->count; k++) {
         const sl_cut_candidate *c = &w->s.candidate[k - 1];
-        *passing += c->passes;
+        w->passing += c->passes;
         beyond = fmax(beyond, c->positive_parts + c->negative_parts - (k + 1));
     }
-    exp_claims_measure(claims, w->title, "converged", w->s.spectrum->info.converged);
-    exp_claims_measure(claims, w->title, "largest residual", w->s.spectrum->info.max_residual);
-    exp_claims_measure(claims, w->title, "fiedler passes", w->s.candidate[0].passes);
-    exp_claims_measure(claims, w->title, "nodal parts of the Fiedler vector",
+    exp_claims_measure(claims, w->pose->title, "converged", w->s.spectrum->info.converged);
+    exp_claims_measure(claims, w->pose->title, "largest residual", w->s.spectrum->info.max_residual);
+    exp_claims_measure(claims, w->pose->title, "fiedler passes", w->s.candidate[0].passes);
+    exp_claims_measure(claims, w->pose->title, "nodal parts of the Fiedler vector",
                        w->s.candidate[0].positive_parts + w->s.candidate[0].negative_parts);
-    exp_claims_measure(claims, w->title, "Courant: most nodal parts beyond k + 1", beyond);
-    exp_claims_measure(claims, w->title, "vectors that pass", *passing);
+    exp_claims_measure(claims, w->pose->title, "Courant: most nodal parts beyond k + 1", beyond);
+    exp_claims_measure(claims, w->pose->title, "vectors that pass", w->passing);
 }
 
-sl_status hand_show(exp_run *run, exp_page *page, exp_claims *claims, const exp_source *source)
+static sl_status show_sheet(exp_run *run, exp_page *page, const hand_work *w)
 {
-    sl_status status = SL_OK;
-    hand_work work;
     char file[64];
-    int32_t passing = 0;
-    SL_TRY(hand_compute(run, source, &work));
-    SL_TRY(hand_write_csv(run, &work));
-    measure_spectrum(claims, &work, &passing);
-    exp_page_html(page, "<h3>%s</h3>\n", source->generated ? "The generated hand" : "The hand of the corpus folder");
-    show_findings(page, &work, passing);
-    SL_TRY(show_vectors(run, page, &work));
-    snprintf(file, sizeof file, "%s.svg", work.tag);
+    exp_page_html(page, "<h3>%s</h3>\n", w->pose->heading);
+    show_findings(page, w);
+    const sl_status status = show_vectors(run, page, w);
+    snprintf(file, sizeof file, "%s.svg", w->pose->tag);
     exp_page_html(page, "<div class=\"plot\">\n");
     exp_page_figure(page, "", file, "eigenvalues by number, those that pass marked",
                     "Eigenvalues; a dot in green is a cut that passes the filter.");
     exp_page_html(page, "</div>\n");
-    SL_TRY(hand_rules(run, page, claims, &work));
+    return status;
+}
+
+sl_status hand_show(exp_run *run, exp_page *page, exp_claims *claims, const exp_source *source, const hand_pose *pose,
+                    hand_work *w)
+{
+    sl_status status = SL_OK;
+    SL_TRY(hand_compute(run, source, pose, w));
+    SL_TRY(hand_write_csv(run, w));
+    measure_spectrum(claims, w);
+    if (pose->sheet) {
+        SL_TRY(show_sheet(run, page, w));
+    }
+    SL_TRY(hand_rules(run, page, claims, w));
 cleanup:
-    hand_clear(&work);
     return status;
 }
