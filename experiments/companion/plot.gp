@@ -47,6 +47,7 @@ do for [figure = 1:3] {
                 set ytics nomirror out ('1/64' -6, '1/32' -5, '1/16' -4, '1/8' -3, '1/4' -2, '1/2' -1, '1' 0, '2' 1, \
                     '4' 2, '8' 3, '16' 4, '32' 5, '64' 6, '128' 7, '256' 8)
             }
+            if (metric eq 'seam') { set ytics add ('0.7' log(0.7)/log(2), '1.4' log(1.4)/log(2), '2.8' 1.4854) }
             set arrow 1 from 0.4,0 to methods + 0.6,0 nohead lw 1.4 lc rgb '#1a7f4b' back
             n = row_methods(row)
             plot for [m = 1:n] file skip 1 \

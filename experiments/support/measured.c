@@ -39,7 +39,7 @@ static double share_of_axis(const sl_mesh *mesh, const sl_polygons *polygons, co
     return all > 0.0 ? seam / all : -1.0;
 }
 
-static double best_axis(const sl_mesh *mesh, const sl_polygons *polygons, const sl_generated *made, bool by_number)
+double exp_axis_kept(const sl_mesh *mesh, const sl_polygons *polygons, const sl_generated *made, bool by_number)
 {
     double best = -1.0;
     for (int32_t k = 0; made != NULL && k < made->nplanted; k++) {
@@ -59,7 +59,7 @@ static sl_status take_numbers(exp_run *run, const sl_polygons *polygons, const d
     if (status != SL_OK) {
         return status;
     }
-    *out = (exp_numbers){.axis = best_axis(mesh, polygons, made, by_number),
+    *out = (exp_numbers){.axis = exp_axis_kept(mesh, polygons, made, by_number),
                          .overlap = m.overlap_inside + m.overlap_across,
                          .fill = m.fill,
                          .flipped = m.global.flipped};

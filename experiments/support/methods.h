@@ -71,6 +71,10 @@ typedef struct exp_numbers {
 SL_NODISCARD sl_status exp_unwrap_way(exp_run *run, const sl_polygons *polygons, const sl_generated *made, int way,
                                       exp_numbers *out, sl_atlas **atlas);
 
+/* Share of the length of the planted mirrors' axes that is seam, the best of them; -1 = there is none. made: nullable.
+ * by_number: input vertices of the mesh are those of `made`; else the mirrors are looked for by position. */
+double exp_axis_kept(const sl_mesh *mesh, const sl_polygons *polygons, const sl_generated *made, bool by_number);
+
 /* Measures UVs that lie on a mesh already, by another tool: seams are where the two sides' UVs differ. Vertices at one
  * place are one. The mirrors are looked for by position. SL_BAD_INPUT (a corner without UV), SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status exp_measure_uv(exp_run *run, const sl_polygons *polygons, const double *corner_uv,
