@@ -1,5 +1,6 @@
 /* The forms of ABF++ compared on charts of generated models, by a list of seeds. */
 #include "generators.h"
+#include "support/failures.h"
 #include "support/main.h"
 
 #include <math.h>
@@ -102,7 +103,7 @@ static sl_status try_list(exp_run *run, form *forms)
     for (char *line = data; line != NULL && *line != '\0' && !(run->quick && lines >= QUICK_SEEDS);) {
         char *end = strchr(line, '\n');
         if (line[0] != '#' && sscanf(line, "%63[^,],%d", model, &seed) == 2) {
-            SL_TRY(try_model(run, model, seed, forms));
+            SL_TRY(exp_row(run, model, try_model(run, model, seed, forms)));
             lines++;
         }
         line = end != NULL ? end + 1 : NULL;

@@ -1,5 +1,6 @@
 /* What each part of the segmentation is worth: one setting changed at a time. */
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/main.h"
 #include "support/turning.h"
 
@@ -129,9 +130,11 @@ static sl_status run_model(exp_run *run, const exp_source *source, const sl_poly
     snprintf(m->name, sizeof m->name, "%s", source->name);
     m->facets = polygons->nf;
     for (int k = 0; k < CHANGES; k++) {
-        const sl_status status = run_change(run, polygons, &changes[k], m->metric[k]);
-        m->failed[k] = status != SL_OK;
-        if (status == SL_CANCELLED || status == SL_OUT_OF_MEMORY) {
+        char name[160];
+        sl_status status = run_change(run, polygons, &changes[k], m->metric[k]);
+        snprintf(name, sizeof name, "%s by %s", m->name, changes[k].name);
+        m->failed[k] = exp_failed(run, name, &status);
+        if (status != SL_OK) {
             return status;
         }
     }
@@ -269,8 +272,8 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
         if (!wanted(run, &source[k])) {
             continue;
         }
-        SL_TRY(exp_mesh_load(&source[k], &mesh, &run->diag));
-        if (mesh.polygons.nf <= MOST_FACETS) {
+        status = exp_mesh_load(&source[k], &mesh, &run->diag);
+        if (!exp_failed(run, source[k].name, &status) && status == SL_OK && mesh.polygons.nf <= MOST_FACETS) {
             status = run_model(run, &source[k], &mesh.polygons, changes, &m[count++]);
         }
         exp_mesh_clear(&mesh);

@@ -1,6 +1,7 @@
 /* Sec. 3.2: PCA and planes find the equator of straight objects only. Straight objects, bent more and more. */
 #include "lens.h"
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/main.h"
 #include "support/pictures.h"
 #include "support/turning.h"
@@ -30,6 +31,7 @@ typedef struct outcome {
 
 typedef struct results {
     int32_t angles;
+    bool made[MODELS]; /* false: failed */
     outcome outcome[MODELS][MOST_ANGLES][METHODS];
 } results;
 
@@ -149,14 +151,15 @@ static sl_status bend_model_all(exp_run *run, exp_page *page, int m, results *r)
     sl_status status = SL_OK;
     bend_model model = {0};
     const double step = run->quick ? 90.0 : 30.0;
-    SL_TRY(m == 0 ? lens_make(&model) : bend_load(run, models[m].name, &model));
     exp_page_html(page, "<h3>%s</h3>\n<div class=\"grid cuts\">\n", models[m].title);
+    SL_TRY(m == 0 ? lens_make(&model) : bend_load(run, models[m].name, &model));
     for (int32_t a = 0; a < r->angles; a++) {
         const bool shown = a == 0 || fabs(step * a - 270.0) < 1.0;
         SL_TRY(bend_one(run, page, m, &model, step * a, shown, r->outcome[m][a]));
     }
-    exp_page_html(page, "</div>\n");
+    r->made[m] = true;
 cleanup:
+    exp_page_html(page, "</div>\n");
     bend_clear(&model);
     return status;
 }
@@ -169,7 +172,7 @@ static sl_status write_csv(exp_run *run, const results *r)
                         &csv));
     for (int m = 0; m < MODELS; m++) {
         for (int k = 0; k < METHODS; k++) {
-            for (int32_t a = 0; a < r->angles; a++) {
+            for (int32_t a = 0; r->made[m] && a < r->angles; a++) {
                 const outcome *o = &r->outcome[m][a][k];
                 const double number[] = {o->equator, o->seam, o->turning, o->l2};
                 sl_writer_format(csv, "%s,%s,%.0f,%d", models[m].name, method_name[k], o->degrees, o->charts);
@@ -189,7 +192,7 @@ static void table(exp_page *page, const results *r)
     exp_page_table_begin(page, "model|method|bent [&deg;]|charts|front from back|seam / length|turning [&deg;]|L2");
     for (int m = 0; m < MODELS; m++) {
         for (int k = 0; k < METHODS; k++) {
-            for (int32_t a = 0; a < r->angles; a++) {
+            for (int32_t a = 0; r->made[m] && a < r->angles; a++) {
                 const outcome *o = &r->outcome[m][a][k];
                 exp_page_row_begin(page, o->invalid > 0);
                 exp_page_cell(page, "%s", models[m].name);
@@ -212,7 +215,7 @@ static void measure_claims(exp_claims *claims, const results *r, const exp_run *
 {
     const int32_t bent = run->quick ? 3 : 9;
     for (int m = 0; m < MODELS; m++) {
-        for (int k = 0; k < METHODS; k++) {
+        for (int k = 0; r->made[m] && k < METHODS; k++) {
             char name[64];
             snprintf(name, sizeof name, "%s by %s", models[m].name, method_name[k]);
             exp_claims_measure(claims, name, "front from back straight", r->outcome[m][0][k].equator);
@@ -228,7 +231,7 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
     sl_status status = SL_OK;
     results r = {.angles = run->quick ? 4 : MOST_ANGLES};
     for (int m = 0; m < MODELS; m++) {
-        SL_TRY(bend_model_all(run, page, m, &r));
+        SL_TRY(exp_row(run, models[m].name, bend_model_all(run, page, m, &r)));
     }
     exp_page_html(page, "<div class=\"plot\">\n");
     exp_page_figure(page, "", "bending.svg", "charts and equator over the angle",

@@ -1,5 +1,6 @@
 /* Figure 4: the angle at a border vertex turned through 180 degrees, 5 degrees and two iterations a drag. */
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/sheet.h"
 
 #include <math.h>
@@ -178,9 +179,9 @@ cleanup:
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(show(run, page, claims, "snowflake", 6, 390.0));
-    SL_TRY(show(run, page, claims, "starfish", 0, 390.0));
-    SL_TRY(show(run, page, claims, "hand", 2, 390.0));
+    SL_TRY(exp_row(run, "snowflake", show(run, page, claims, "snowflake", 6, 390.0)));
+    SL_TRY(exp_row(run, "starfish", show(run, page, claims, "starfish", 0, 390.0)));
+    SL_TRY(exp_row(run, "hand", show(run, page, claims, "hand", 2, 390.0)));
     exp_page_figure(page, "", "drags.svg", "gradient over the drags",
                     "|&nabla;L| left by the two iterations of each drag; the angle itself is met to rounding.");
 cleanup:

@@ -1,4 +1,5 @@
 /* Figure 5: the straightening tool, on sequences of edges inside a chart. */
+#include "support/failures.h"
 #include "support/sheet.h"
 
 static const exp_lines lines = {
@@ -10,9 +11,9 @@ static const exp_lines lines = {
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(exp_show_lines(run, page, claims, "rock", &lines));
-    SL_TRY(exp_show_lines(run, page, claims, "turtle", &lines));
-    SL_TRY(exp_show_lines(run, page, claims, "pullover", &lines));
+    SL_TRY(exp_row(run, "rock", exp_show_lines(run, page, claims, "rock", &lines)));
+    SL_TRY(exp_row(run, "turtle", exp_show_lines(run, page, claims, "turtle", &lines)));
+    SL_TRY(exp_row(run, "pullover", exp_show_lines(run, page, claims, "pullover", &lines)));
 cleanup:
     return status;
 }

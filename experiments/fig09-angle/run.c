@@ -1,4 +1,5 @@
 /* Figure 9: the angle-on-border tool. The sum of the angles at a border vertex is one more row of g2. */
+#include "support/failures.h"
 #include "support/sheet.h"
 
 #include <math.h>
@@ -91,8 +92,8 @@ cleanup:
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(show(run, page, claims, "snowflake", 6));
-    SL_TRY(show(run, page, claims, "starfish", 0));
+    SL_TRY(exp_row(run, "snowflake", show(run, page, claims, "snowflake", 6)));
+    SL_TRY(exp_row(run, "starfish", show(run, page, claims, "starfish", 0)));
 cleanup:
     return status;
 }

@@ -1,4 +1,5 @@
 /* Figure 10: lines that cross. g2 splits in two where a line passes, in four where two do. */
+#include "support/failures.h"
 #include "support/sheet.h"
 
 #include <stdio.h>
@@ -122,10 +123,10 @@ cleanup:
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(exp_show_lines(run, page, claims, "rock", &lines));
-    SL_TRY(exp_show_lines(run, page, claims, "airplane", &lines));
-    SL_TRY(exp_show_lines(run, page, claims, "pullover", &lines));
-    SL_TRY(show_meeting(run, page, claims, "bird"));
+    SL_TRY(exp_row(run, "rock", exp_show_lines(run, page, claims, "rock", &lines)));
+    SL_TRY(exp_row(run, "airplane", exp_show_lines(run, page, claims, "airplane", &lines)));
+    SL_TRY(exp_row(run, "pullover", exp_show_lines(run, page, claims, "pullover", &lines)));
+    SL_TRY(exp_row(run, "bird", show_meeting(run, page, claims, "bird")));
 cleanup:
     return status;
 }

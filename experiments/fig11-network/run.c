@@ -1,4 +1,5 @@
 /* Figure 11: a network of straight lines and prescribed angles, all at once. */
+#include "support/failures.h"
 #include "support/sheet.h"
 
 #include <math.h>
@@ -140,8 +141,8 @@ cleanup:
 static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 {
     sl_status status = SL_OK;
-    SL_TRY(show(run, page, claims, "pullover", 0));
-    SL_TRY(show(run, page, claims, "starfish", 0));
+    SL_TRY(exp_row(run, "pullover", show(run, page, claims, "pullover", 0)));
+    SL_TRY(exp_row(run, "starfish", show(run, page, claims, "starfish", 0)));
 cleanup:
     return status;
 }

@@ -3,6 +3,7 @@
 #include "image/png.h"
 #include "render/chart_colors.h"
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/main.h"
 #include "support/pictures.h"
 #include "walker.h"
@@ -141,9 +142,9 @@ static sl_status show_model(exp_run *run, exp_page *page, exp_claims *claims, co
         sl_atlas_free(atlas);
         atlas = NULL;
     }
-    exp_page_html(page, "</div>\n");
     fprintf(stderr, "%s: %.1f %% saved, %d charts, %d copies\n", r->name, 100.0 * r->saved, r->charts[1], r->copies);
 cleanup:
+    exp_page_html(page, "</div>\n");
     sl_atlas_free(atlas);
     return status;
 }
@@ -183,6 +184,9 @@ static void table(exp_page *page, const result *r)
     exp_page_table_begin(page, "model|facets|charts without|with|of them copies|images of one chart|memory saved|"
                                "scale on a square page|seam without|with|worst L2 without|with");
     for (int k = 0; k < MODELS; k++) {
+        if (r[k].charts[1] == 0) {
+            continue; /* failed */
+        }
         exp_page_row_begin(page, false);
         exp_page_cell(page, "%s", r[k].name);
         exp_page_cell(page, "%d", r[k].facets);
@@ -229,7 +233,7 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
     result results[MODELS] = {{.name = "walker"}, {.name = "body"}, {.name = "quadruped"}, {.name = "octopus"}};
     introduce(page);
     for (int k = 0; k < MODELS; k++) {
-        SL_TRY(show_generated(run, page, claims, &results[k]));
+        SL_TRY(exp_row(run, results[k].name, show_generated(run, page, claims, &results[k])));
     }
     table(page, results);
     SL_TRY(write_csv(run, results));

@@ -1,6 +1,7 @@
 /* Higher eigenvectors: redundant, decorrelated, principal directions (Sec. 3.2 and 3.3). */
 #include "higher.h"
 #include "support/csv.h"
+#include "support/failures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -179,13 +180,16 @@ static sl_status measure_all(exp_run *run, vectors *out, const exp_source *sourc
     const int32_t most = run->quick ? MOST_FACETS_QUICK : MOST_FACETS;
     for (int32_t k = 0; k < sources && status == SL_OK; k++) {
         exp_mesh mesh;
-        SL_TRY(exp_mesh_load(&source[k], &mesh, &run->diag));
-        if (mesh.polygons.nf >= 1000 && mesh.polygons.nf <= most) {
-            status = measure_model(run, out, &source[k], &mesh.polygons, &r[(*count)++]);
+        bool measured = false;
+        status = exp_mesh_load(&source[k], &mesh, &run->diag);
+        if (status == SL_OK && mesh.polygons.nf >= 1000 && mesh.polygons.nf <= most) {
+            status = measure_model(run, out, &source[k], &mesh.polygons, &r[*count]);
+            measured = status == SL_OK;
         }
+        *count += measured;
+        exp_failed(run, source[k].name, &status);
         exp_mesh_clear(&mesh);
     }
-cleanup:
     return status;
 }
 

@@ -1,5 +1,6 @@
 /* Are seams the same over poses, noise and other meshes of one surface? */
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/pictures.h"
 #include "variants.h"
 
@@ -134,7 +135,7 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
     SL_TRY(exp_csv_open(run, "seams.csv", "model,method,variant,charts,kept,of_new", &csv));
     exp_page_table_begin(page, "model|method|variant|charts|seams kept|seams new");
     for (int m = 0; m < count; m++) {
-        SL_TRY(compare_variants(run, page, claims, csv, models[m]));
+        SL_TRY(exp_row(run, models[m], compare_variants(run, page, claims, csv, models[m])));
     }
     exp_page_table_end(page);
     show_pictures(page, count);

@@ -23,6 +23,12 @@ bool exp_failed(exp_run *run, const char *name, sl_status *status)
     return true;
 }
 
+sl_status exp_row(exp_run *run, const char *name, sl_status status)
+{
+    exp_failed(run, name, &status);
+    return status;
+}
+
 int32_t exp_failures_show(const exp_run *run, exp_page *page)
 {
     if (run->failed == 0) {

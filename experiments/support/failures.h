@@ -10,6 +10,9 @@
  * cannot be written) is no model's fault: false, *status as it was. */
 bool exp_failed(exp_run *run, const char *name, sl_status *status);
 
+/* The same around a call: SL_TRY(exp_row(run, name, call)) goes on where only a model failed. */
+SL_NODISCARD sl_status exp_row(exp_run *run, const char *name, sl_status status);
+
 /* A table of what failed, where anything did. Returns how many. */
 int32_t exp_failures_show(const exp_run *run, exp_page *page);
 

@@ -1,6 +1,7 @@
 /* Time and memory against size, and where the time goes. */
 #include "generators.h"
 #include "support/csv.h"
+#include "support/failures.h"
 #include "support/main.h"
 
 #include <math.h>
@@ -198,8 +199,10 @@ static sl_status time_all(exp_run *run, row *r, int32_t *count)
             sl_status status = generator != NULL ? facets_of(generator, scale, &facets) : SL_BAD_INPUT;
             larger[m] = facets > most;
             if (status == SL_OK && !larger[m]) {
-                status = time_one(run, generator, scale, &r[(*count)++]);
+                status = time_one(run, generator, scale, &r[*count]);
+                *count += status == SL_OK;
             }
+            larger[m] = exp_failed(run, models[m], &status) || larger[m];
             if (status != SL_OK) {
                 return status;
             }
