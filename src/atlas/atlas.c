@@ -2,14 +2,9 @@
 
 #include "atlas/atlas_internal.h"
 #include "base/memory.h"
-#include "meshio/meshfile.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
-
-enum { PLACING_RETRIES = 6 };
-static const double PAGE_SHRINKAGE = 1.0 - 0x1p-12; /* half a texel of 2048: the margins lose a 4096th */
 
 sl_atlas_def sl_atlas_default(void)
 {
@@ -20,113 +15,6 @@ sl_atlas_def sl_atlas_default(void)
         .seams = SL_SEAMS_AUTOMATIC,
         .check_resolution = 4096,
     };
-}
-
-/* Charts as the packer wants them, copies left out: UVs by corner, triangles by position in the chart. */
-typedef struct pack_input {
-    int32_t count;
-    sl_pack_chart *chart; /* count, into the arrays below */
-    double *uv;           /* 2 nh */
-    int32_t *tri;         /* 3 nt */
-} pack_input;
-
-static void pack_input_clear(pack_input *input)
-{
-    sl_free(input->chart);
-    sl_free(input->uv);
-    sl_free(input->tri);
-}
-
-static sl_status pack_input_init(const sl_atlas *atlas, pack_input *input)
-{
-    const sl_mesh *mesh = atlas->mesh;
-    const sl_segmentation *seg = atlas->segmentation;
-    input->chart = sl_calloc(seg->nchart, sizeof *input->chart);
-    input->uv = sl_alloc(mesh->nh, 2 * sizeof *input->uv);
-    input->tri = sl_alloc(atlas->triangulation->nt, 3 * sizeof *input->tri);
-    if (input->chart == NULL || input->uv == NULL || input->tri == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    int64_t corners = 0, triangles = 0;
-    for (int32_t c = 0; c < seg->nchart; c++) {
-        if (seg->chart[c].copy_of >= 0) {
-            continue;
-        }
-        sl_pack_chart *chart = &input->chart[input->count++];
-        chart->uv = input->uv + 2 * corners;
-        chart->tri = input->tri + 3 * triangles;
-        for (int32_t i = seg->chart[c].first; i < seg->chart[c].first + seg->chart[c].count; i++) {
-            const int32_t f = seg->face[i], first = mesh->face_first[f], degree = sl_degree(mesh, f);
-            memcpy(input->uv + 2 * corners, seg->corner_uv + 2 * (int64_t)first,
-                   2 * (size_t)degree * sizeof *input->uv);
-            for (int32_t k = 3 * atlas->triangulation->first[f]; k < 3 * atlas->triangulation->first[f + 1]; k++) {
-                input->tri[3 * triangles + (k - 3 * atlas->triangulation->first[f])] =
-                    chart->nv + atlas->triangulation->corner[k] - first;
-            }
-            triangles += atlas->triangulation->first[f + 1] - atlas->triangulation->first[f];
-            chart->nt += atlas->triangulation->first[f + 1] - atlas->triangulation->first[f];
-            chart->nv += degree;
-            corners += degree;
-        }
-    }
-    return SL_OK;
-}
-
-/* The charts' UVs on the page: in the short decimals that files hold, or as they come (more digits in the file). */
-static void place_corners(sl_atlas *atlas, bool quantise)
-{
-    const sl_mesh *mesh = atlas->mesh;
-    const sl_segmentation *seg = atlas->segmentation;
-    for (int32_t h = 0; h < mesh->nh; h++) {
-        const sl_placement *p = &atlas->placement[seg->face_chart[mesh->face[h]]];
-        const double *uv = seg->corner_uv + 2 * (int64_t)h;
-        const double c = cos(p->angle), s = sin(p->angle);
-        double *out = atlas->corner_uv + 2 * (int64_t)h;
-        out[0] = atlas->pack.scale * (c * uv[0] - s * uv[1]) + p->offset[0];
-        out[1] = atlas->pack.scale * (s * uv[0] + c * uv[1]) + p->offset[1];
-        for (int k = 0; k < 2 && quantise; k++) {
-            out[k] = sl_uv_quantise(out[k]);
-        }
-        memcpy(atlas->input_corner_uv + 2 * (int64_t)sl_input_corner(mesh, h), out, 2 * sizeof *out);
-    }
-}
-
-/* From the packer's list to one placement a chart: a copy lies where its source lies. */
-static void spread_placements(const sl_segmentation *seg, const sl_placement *packed, sl_placement *placement)
-{
-    int32_t n = 0;
-    for (int32_t c = 0; c < seg->nchart; c++) {
-        if (seg->chart[c].copy_of < 0) {
-            placement[c] = packed[n++];
-        }
-    }
-    for (int32_t c = 0; c < seg->nchart; c++) {
-        placement[c] = placement[sl_chart_shown(seg, c)];
-    }
-}
-
-/* Places the charts on the page. */
-static sl_status pack_charts(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
-{
-    const sl_mesh *mesh = atlas->mesh;
-    const sl_segmentation *seg = atlas->segmentation;
-    pack_input input = {0};
-    sl_status status = SL_OK;
-    sl_placement *packed = sl_calloc(seg->nchart, sizeof *packed);
-    atlas->placement = sl_calloc(seg->nchart, sizeof *atlas->placement);
-    atlas->corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->corner_uv);
-    atlas->input_corner_uv = sl_alloc(mesh->nh, 2 * sizeof *atlas->input_corner_uv);
-    if (packed == NULL || atlas->placement == NULL || atlas->corner_uv == NULL || atlas->input_corner_uv == NULL) {
-        status = SL_OUT_OF_MEMORY;
-        goto cleanup;
-    }
-    SL_TRY(pack_input_init(atlas, &input));
-    SL_TRY(sl_pack(input.count, input.chart, &def->pack, context, packed, &atlas->pack));
-    spread_placements(seg, packed, atlas->placement);
-cleanup:
-    sl_free(packed);
-    pack_input_clear(&input);
-    return status;
 }
 
 static sl_warning *push_warning(sl_atlas *atlas, int32_t chart)
@@ -309,40 +197,6 @@ static sl_status require_flat(const sl_atlas *atlas, const sl_atlas_def *def, sl
     return SL_OK;
 }
 
-static bool only_texels_meet(const sl_atlas_check *check)
-{
-    return !check->passed && check->flipped == 0 && check->degenerate == 0 && check->uncertified_charts == 0 &&
-           check->unlike == 0 && check->proven;
-}
-
-/* Writes the UVs and judges them; in the rare cases that need it, with all digits (triangles smaller than the quantum)
- * or on a page a little smaller (slivers that only the rounding of a texel count turns over, seen at its centres). */
-sl_status sl_atlas_settle(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
-{
-    sl_status status = SL_OK;
-    bool quantise = true;
-    for (int32_t attempt = 0; attempt <= PLACING_RETRIES; attempt++) {
-        place_corners(atlas, quantise);
-        SL_TRY(sl_atlas_clear_borders(atlas, context));
-        SL_TRY(sl_atlas_verify(atlas, def, context));
-        if (atlas->check.passed || (!quantise && !only_texels_meet(&atlas->check))) {
-            break;
-        }
-        if (!only_texels_meet(&atlas->check)) {
-            quantise = false;
-            continue;
-        }
-        atlas->pack.scale *= PAGE_SHRINKAGE;
-        atlas->pack.fill *= PAGE_SHRINKAGE * PAGE_SHRINKAGE;
-        for (int32_t c = 0; c < atlas->segmentation->nchart; c++) {
-            atlas->placement[c].offset[0] *= PAGE_SHRINKAGE;
-            atlas->placement[c].offset[1] *= PAGE_SHRINKAGE;
-        }
-    }
-cleanup:
-    return status;
-}
-
 /* By search, or by recursion alone. */
 static sl_status cut_mesh(sl_atlas *atlas, const sl_atlas_def *def, const sl_context *context)
 {
@@ -370,13 +224,7 @@ sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const 
         SL_TRY(sl_flatten_charts(atlas->mesh, atlas->triangulation, &def->segment, context, &atlas->segmentation));
         SL_TRY(require_disks(atlas, diag));
     }
-    status = pack_charts(atlas, def, context);
-    if (status == SL_INFEASIBLE) {
-        sl_diag_reason(diag, "%d charts and their margins do not fit into %d x %d texels", atlas->segmentation->nchart,
-                       def->pack.resolution, def->pack.resolution);
-        sl_diag_hint(diag, "raise --resolution or lower --margin");
-    }
-    SL_TRY(status);
+    SL_TRY(sl_atlas_pack(atlas, def, context, diag));
     SL_TRY(sl_atlas_settle(atlas, def, context));
     SL_TRY(warn_of_charts(atlas, def));
     *out = atlas;

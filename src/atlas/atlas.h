@@ -13,7 +13,7 @@ typedef struct sl_atlas_def {
     sl_segment_def segment;
     bool best; /* automatic seams by search, as `optimize` says, from the segmentation's cuts; default false */
     sl_optimize_def optimize;
-    sl_pack_def pack;
+    sl_pack_def pack;         /* density is per unit of length in space, in the mean over the surface */
     sl_seam_source seams;     /* who cuts: default SL_SEAMS_AUTOMATIC */
     sl_seam_input seam_input; /* borrowed; what the other sources need */
     int32_t check_resolution; /* texels a side of the last overlap test; default 4096 */
@@ -47,10 +47,12 @@ typedef struct sl_atlas {
     sl_repair_report repair;
     sl_segmentation *segmentation;
     sl_optimize_info optimized; /* of the search, where def->best */
-    double *corner_uv;       /* nh x 2, by mesh halfedge, quantised as files hold them, in [0, 1] */
-    double *input_corner_uv; /* the same by input corner */
-    sl_placement *placement; /* one a chart; a copy has its source's */
+    double *corner_uv;          /* nh x 2, by mesh halfedge, quantised as files hold them; page p fills the UDIM tile
+                                   1001 + p: [0, 1] each way, moved by (p % 10, p / 10) */
+    double *input_corner_uv;    /* the same by input corner */
+    sl_placement *placement;    /* one a chart; a copy has its source's */
     sl_pack_info pack;
+    double texels_a_unit; /* of length in space, in the mean */
     sl_atlas_check check;
     int32_t nwarning;
     sl_warning *warning;
@@ -64,6 +66,12 @@ typedef struct sl_atlas {
  * diag is nullable. Same bytes for any number of threads. */
 SL_NODISCARD sl_status sl_unwrap(const sl_polygons *polygons, const sl_atlas_def *def, const sl_context *context,
                                  sl_atlas **out, sl_diag *diag);
+
+/* Where page p lies in UV space, along u (axis 0) and v (axis 1). */
+static inline double sl_page_tile(int32_t page, int axis)
+{
+    return axis == 0 ? page % 10 : page / 10;
+}
 
 /* Charts placed by other hands: from segmentation->corner_uv, placement and pack.scale fills corner_uv and
  * input_corner_uv, as they will be written, and check. Everything else in atlas stands; corner_uv and input_corner_uv

@@ -1,5 +1,6 @@
 #include "atlas/repack.h"
 
+#include "atlas/atlas.h"
 #include "atlas/repack_internal.h"
 #include "atlas/uv_triangles.h"
 #include "base/memory.h"
@@ -10,8 +11,6 @@
 
 #include <math.h>
 #include <string.h>
-
-enum { TILES_A_ROW = 10 }; /* UDIM */
 
 static const double rounding = 1e-6; /* texels: what a distance may lose when UVs are rounded */
 
@@ -136,8 +135,8 @@ static sl_status place_corners(const repacking *r, sl_repacked *out)
         for (int32_t i = r->charts.first[c]; i < r->charts.first[c + 1]; i++) {
             double *to = out->corner_uv + 2 * (int64_t)r->charts.corner[i];
             move_point(r, out, at, r->charts.uv + 2 * (int64_t)i, to);
-            to[0] = sl_uv_quantise(to[0] + at->page % TILES_A_ROW);
-            to[1] = sl_uv_quantise(to[1] + at->page / TILES_A_ROW);
+            to[0] = sl_uv_quantise(to[0] + sl_page_tile(at->page, 0));
+            to[1] = sl_uv_quantise(to[1] + sl_page_tile(at->page, 1));
         }
     }
     return SL_OK;

@@ -169,7 +169,10 @@ static json_t *options_json(const sl_atlas_def *def)
         json_object_set_new(j, "weights", weights_json(&def->optimize.weights));
     }
     json_object_set_new(j, "resolution", json_integer(def->pack.resolution));
+    json_object_set_new(j, "height", json_integer(def->pack.height > 0 ? def->pack.height : def->pack.resolution));
     json_object_set_new(j, "margin", number(def->pack.margin));
+    json_object_set_new(j, "pages", json_integer(def->pack.pages));
+    json_object_set_new(j, "density", number(def->pack.density));
     return j;
 }
 
@@ -199,6 +202,7 @@ static json_t *chart_json(const sl_atlas *atlas, int32_t c)
                         chart->copy_of < 0                 ? json_null()
                         : chart->kind == SL_SYMMETRY_EXACT ? json_string("exact")
                                                            : json_string("near"));
+    json_object_set_new(j, "page", json_integer(p->page));
     json_object_set_new(
         j, "placement",
         json_pack("{s:o, s:[o,o]}", "angle", number(p->angle), "offset", number(p->offset[0]), number(p->offset[1])));
@@ -308,6 +312,8 @@ static json_t *atlas_json(const sl_atlas *atlas, const sl_atlas_def *def)
     json_object_set_new(j, "certificate", certificate_json(atlas));
     json_object_set_new(j, "scale", number(atlas->pack.scale));
     json_object_set_new(j, "fill", number(atlas->pack.fill));
+    json_object_set_new(j, "pages", json_integer(atlas->pack.pages));
+    json_object_set_new(j, "texels_a_unit", number(atlas->texels_a_unit));
     json_object_set_new(j, "seam_length_over_diagonal", number(sl_atlas_seam_diagonals(atlas->mesh)));
     json_object_set_new(j, "merges", json_integer(seg->merges));
     json_object_set_new(j, "warnings", warnings_json(atlas));

@@ -94,14 +94,16 @@ static void certify_chunk(void *user, int64_t begin, int64_t end, int32_t chunk)
     }
 }
 
-/* The triangles of the charts that are copies (or not), in the triangulation's order. Returns how many. */
-static int32_t select_triangles(const sl_atlas *atlas, bool copies, int32_t *tri)
+/* The triangles of one page's charts that are copies (or not), in the triangulation's order; page -1 = of all. Returns
+ * how many. */
+static int32_t select_triangles(const sl_atlas *atlas, bool copies, int32_t page, int32_t *tri)
 {
     const sl_segmentation *seg = atlas->segmentation;
     const sl_triangulation *t = atlas->triangulation;
     int32_t n = 0;
     for (int32_t f = 0; f < atlas->mesh->nf; f++) {
-        if ((seg->chart[seg->face_chart[f]].copy_of >= 0) == copies) {
+        const int32_t c = seg->face_chart[f];
+        if ((seg->chart[c].copy_of >= 0) == copies && (page < 0 || atlas->placement[c].page == page)) {
             const int32_t count = t->first[f + 1] - t->first[f];
             memcpy(tri + 3 * (int64_t)n, t->corner + 3 * (int64_t)t->first[f], 3 * (size_t)count * sizeof *tri);
             n += count;
@@ -110,36 +112,64 @@ static int32_t select_triangles(const sl_atlas *atlas, bool copies, int32_t *tri
     return n;
 }
 
-/* Texels of the whole page hit more than once by charts that are no copies, and those that copies hit; and the proof
- * that no two triangles of the former overlap, in one chart or two. */
-static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
+/* All UVs as if every chart were on the first page. */
+static double *untile(const sl_atlas *atlas)
+{
+    double *uv = sl_alloc(atlas->mesh->nh, 2 * sizeof *uv);
+    for (int32_t h = 0; uv != NULL && h < atlas->mesh->nh; h++) {
+        const int32_t page = atlas->placement[atlas->segmentation->face_chart[atlas->mesh->face[h]]].page;
+        for (int k = 0; k < 2; k++) {
+            uv[2 * (int64_t)h + k] = atlas->corner_uv[2 * (int64_t)h + k] - sl_page_tile(page, k);
+        }
+    }
+    return uv;
+}
+
+/* Texels of one page: hit more than once by charts that are no copies, and hit by copies. tri: room for 3 nt. */
+static sl_status count_page(sl_atlas *atlas, int32_t page, const double *uv, int32_t *tri, const sl_context *context)
 {
     sl_coverage *coverage = NULL;
-    sl_exact_overlap exact;
     sl_status status = SL_OK;
-    int32_t *tri = sl_alloc(3 * (int64_t)atlas->triangulation->nt, sizeof *tri);
     for (int copies = 0; copies < 2; copies++) {
-        SL_TRY(tri != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-        const int32_t nt = select_triangles(atlas, copies == 1, tri);
+        const int32_t nt = select_triangles(atlas, copies == 1, page, tri);
         if (copies == 1 && nt == 0) {
             break;
         }
         sl_coverage_free(coverage);
         coverage = NULL;
         SL_TRY(sl_coverage_create(atlas->check.resolution, atlas->check.resolution, &coverage));
-        SL_TRY(sl_coverage_add(coverage, atlas->corner_uv, nt, tri, context));
+        SL_TRY(sl_coverage_add(coverage, uv, nt, tri, context));
         if (copies == 0) {
-            atlas->check.covered_texels = sl_coverage_covered(coverage);
-            atlas->check.overlapping_texels = sl_coverage_overlapping(coverage);
-            SL_TRY(sl_overlap_exact(atlas->corner_uv, nt, tri, context, NULL, &exact));
-            atlas->check.proven = exact.red == 0;
+            atlas->check.covered_texels += sl_coverage_covered(coverage);
+            atlas->check.overlapping_texels += sl_coverage_overlapping(coverage);
         } else {
-            atlas->check.shared_texels = sl_coverage_covered(coverage);
+            atlas->check.shared_texels += sl_coverage_covered(coverage);
         }
     }
 cleanup:
     sl_coverage_free(coverage);
+    return status;
+}
+
+/* Texels of all pages; and the proof that no two triangles of charts that are no copies overlap, in one chart or two.
+ */
+static sl_status count_texels(sl_atlas *atlas, const sl_context *context)
+{
+    sl_exact_overlap exact;
+    sl_status status = SL_OK;
+    const int32_t pages = atlas->pack.pages > 1 ? atlas->pack.pages : 1;
+    int32_t *tri = sl_alloc(3 * (int64_t)atlas->triangulation->nt, sizeof *tri);
+    double *uv = untile(atlas);
+    SL_TRY(tri != NULL && uv != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t page = 0; page < pages; page++) {
+        SL_TRY(count_page(atlas, page, uv, tri, context));
+    }
+    const int32_t nt = select_triangles(atlas, false, -1, tri);
+    SL_TRY(sl_overlap_exact(atlas->corner_uv, nt, tri, context, NULL, &exact));
+    atlas->check.proven = exact.red == 0;
+cleanup:
     sl_free(tri);
+    sl_free(uv);
     return status;
 }
 

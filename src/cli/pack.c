@@ -3,6 +3,7 @@
 #include "atlas/sidecar.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/pack_options.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -27,33 +28,26 @@ static const cli_verb verb = {
     .max_files = 1,
 };
 
-enum { OWN_OPTIONS = 9, DEFAULT_EFFORT = 6 };
+enum { OWN_OPTIONS = 2, ALL_OPTIONS = OWN_OPTIONS + CLI_PACK_OPTIONS + CLI_COMMON_OPTIONS, DEFAULT_EFFORT = 6 };
 
 typedef struct pack_options {
     cli_run run;
+    cli_pack_options pack;
     sl_repack_def def;
-    int32_t rotations, up;
+    int32_t up;
     const char *output;
 } pack_options;
 
 static void option_table(pack_options *o, cli_option *table)
 {
-    sl_pack_def *pack = &o->def.pack;
     const cli_option own[OWN_OPTIONS] = {
         {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY to write"},
-        {"resolution", 0, CLI_INT, &pack->resolution, 16, 65536, NULL, "N", "texels along a page's width (2048)"},
-        {"height", 0, CLI_INT, &pack->height, 16, 65536, NULL, "N", "texels along its height (as the width)"},
-        {"margin", 0, CLI_REAL, &pack->margin, 0, 1024, NULL, "T", "texels between charts (4)"},
-        {"rotations", 0, CLI_CHOICE, &o->rotations, 0, 0, "free|right|none", NULL, "by any angle, right ones, none"},
         {"up", 0, CLI_CHOICE, &o->up, 0, 0, "as-is|x|y|z", NULL,
          "where charts are not turned freely, this axis of space points up"},
-        {"pages", 0, CLI_INT, &pack->pages, 1, 1000, NULL, "N", "at most so many pages (1)"},
-        {"density", 0, CLI_REAL, &pack->density, 0, 1e12, NULL, "D",
-         "texels a unit of length in space; 0 = the most that fit (default)"},
-        {"effort", 0, CLI_INT, &pack->effort, 0, 12, NULL, "E", "work spent, doubled by each step (6)"},
     };
     memcpy(table, own, sizeof own);
-    cli_common_options(&o->run, table + OWN_OPTIONS);
+    cli_pack_table(&o->pack, table + OWN_OPTIONS);
+    cli_common_options(&o->run, table + OWN_OPTIONS + CLI_PACK_OPTIONS);
 }
 
 static int usage(const char *what)
@@ -75,7 +69,7 @@ static json_t *options_json(const pack_options *o)
     static const char *const turns[] = {"free", "right", "none"}, *const axes[] = {"as-is", "x", "y", "z"};
     const sl_pack_def *p = &o->def.pack;
     return json_pack("{s:i, s:i, s:f, s:s, s:s, s:i, s:f, s:i}", "resolution", p->resolution, "height",
-                     p->height > 0 ? p->height : p->resolution, "margin", p->margin, "rotations", turns[o->rotations],
+                     p->height > 0 ? p->height : p->resolution, "margin", p->margin, "rotations", turns[p->rotations],
                      "up", axes[o->up], "pages", p->pages, "density", p->density, "effort", p->effort);
 }
 
@@ -206,17 +200,18 @@ static int pack_file(pack_options *o, const char *path)
 
 int cli_pack(int argc, char **argv)
 {
-    pack_options o = {.run = {.verb = verb.name}, .def = sl_repack_default()};
-    cli_option options[OWN_OPTIONS + CLI_COMMON_OPTIONS];
+    pack_options o = {.run = {.verb = verb.name}, .pack = {.def = sl_pack_default()}, .def = sl_repack_default()};
+    cli_option options[ALL_OPTIONS];
     const char *files[1];
     int32_t file_count = 0;
-    o.def.pack.effort = DEFAULT_EFFORT;
+    o.pack.def.effort = DEFAULT_EFFORT;
     option_table(&o, options);
-    int code = cli_parse(&verb, options, (int32_t)SL_COUNTOF(options), argc, argv, 2, files, &file_count);
+    int code = cli_parse(&verb, options, ALL_OPTIONS, argc, argv, 2, files, &file_count);
     if (code >= 0 || (code = check_options(&o)) >= 0 || (code = cli_begin(&o.run)) >= 0) {
         return code;
     }
-    o.def.pack.rotations = (sl_pack_rotations)o.rotations;
+    cli_pack_apply(&o.pack);
+    o.def.pack = o.pack.def;
     o.def.up = (sl_up_axis)o.up;
     code = pack_file(&o, files[0]);
     return cli_end(&o.run, code);

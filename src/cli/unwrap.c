@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/pack_options.h"
 #include "cli/preview.h"
 #include "cli/segment_options.h"
 
@@ -15,13 +16,14 @@ static const cli_verb verb = {
     .name = "unwrap",
     .usage = "seamlab unwrap IN -o OUT [options]",
     .summary = "Cuts a mesh into charts, lays them flat, packs them, checks the result and writes it\n"
-               "with a sidecar OUT.atlas.json that says what was done.",
+               "with a sidecar OUT.atlas.json that says what was done. Page p of several is the UDIM tile 1001 + p.",
     .examples = "  seamlab unwrap model.obj -o model-uv.obj\n"
                 "  seamlab unwrap model.ply -o model-uv.ply --preview pictures --max-stretch 1.2\n"
                 "  seamlab unwrap model.obj -o paper.obj --preset paper\n"
                 "  seamlab unwrap model.obj -o best.obj --preset best --target-stretch 1.02\n"
                 "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n"
-                "  seamlab unwrap model.obj -o own.obj --symmetry off\n",
+                "  seamlab unwrap model.obj -o own.obj --symmetry off\n"
+                "  seamlab unwrap model.obj -o tiles.obj --density 512 --pages 100\n",
     .min_files = 1,
     .max_files = 1,
 };
@@ -29,22 +31,18 @@ static const cli_verb verb = {
 typedef struct unwrap_options {
     cli_run run;
     cli_segment_options segment;
+    cli_pack_options pack;
     sl_atlas_def def;
     const char *output, *preview, *seams, *labels;
-    int32_t rotations;
     bool keep_seams, allow_overlap;
 } unwrap_options;
 
-#define UNWRAP_OPTIONS (CLI_COMMON_OPTIONS + CLI_SEGMENT_OPTIONS + 10)
+enum { OWN_OPTIONS = 7, ALL_OPTIONS = OWN_OPTIONS + CLI_PACK_OPTIONS + CLI_SEGMENT_OPTIONS + CLI_COMMON_OPTIONS };
 
 static void option_table(unwrap_options *o, cli_option *table)
 {
-    const cli_option own[10] = {
+    const cli_option own[OWN_OPTIONS] = {
         {"output", 'o', CLI_TEXT, &o->output, 0, 0, NULL, "OUT", "OBJ or PLY to write"},
-        {"resolution", 0, CLI_INT, &o->def.pack.resolution, 16, 65536, NULL, "N", "texels a side (2048)"},
-        {"margin", 0, CLI_REAL, &o->def.pack.margin, 0, 1024, NULL, "T", "texels between charts (4)"},
-        {"rotations", 0, CLI_CHOICE, &o->rotations, 0, 0, "free|right|none", NULL,
-         "charts are packed turned by any angle, right ones, none"},
         {"preview", 0, CLI_TEXT, &o->preview, 0, 0, NULL, "DIR", "pictures of the model and the atlas"},
         {"seams", 0, CLI_TEXT, &o->seams, 0, 0, NULL, "FILE", "your seams: a line of two vertex numbers an edge"},
         {"labels", 0, CLI_TEXT, &o->labels, 0, 0, NULL, "FILE", "your charts: a line with a number a facet"},
@@ -54,8 +52,9 @@ static void option_table(unwrap_options *o, cli_option *table)
         {"strict", 0, CLI_FLAG, &o->run.strict, 0, 0, NULL, NULL, "exit 4 when there is a warning"},
     };
     memcpy(table, own, sizeof own);
-    cli_segment_table(&o->segment, table + 10);
-    cli_common_options(&o->run, table + 10 + CLI_SEGMENT_OPTIONS);
+    cli_pack_table(&o->pack, table + OWN_OPTIONS);
+    cli_segment_table(&o->segment, table + OWN_OPTIONS + CLI_PACK_OPTIONS);
+    cli_common_options(&o->run, table + OWN_OPTIONS + CLI_PACK_OPTIONS + CLI_SEGMENT_OPTIONS);
 }
 
 static int usage(const char *what)
@@ -148,6 +147,8 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
                       "charts", seg->nchart, "seamDiag", seam, "worstL2", worst_stretch(seg), "fill", atlas->pack.fill,
                       "certified", atlas->check.passed, "flipped", atlas->check.flipped, "overlapping_texels",
                       (json_int_t)atlas->check.overlapping_texels, "warnings", atlas->nwarning, "splits", seg->nsplit);
+        json_object_set_new(j, "pages", json_integer(atlas->pack.pages));
+        json_object_set_new(j, "texelsAUnit", json_real(atlas->texels_a_unit));
         json_object_set_new(j, "copies", json_integer(seg->sharing.copies));
         json_object_set_new(j, "axes", json_integer(seg->sharing.axes));
         json_object_set_new(j, "textureSaved", json_real(seg->sharing.area));
@@ -159,6 +160,10 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
     cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, %s", seg->nchart, seam,
              worst_stretch(seg), atlas->pack.fill,
              atlas->check.passed ? "no flip, no overlap: proven" : "uncertified: charts overlap");
+    if (atlas->pack.pages > 1 || o->def.pack.density > 0.0) {
+        cli_note(&o->run, "on %d page%s, %.4g texels a unit", atlas->pack.pages, atlas->pack.pages == 1 ? "" : "s",
+                 atlas->texels_a_unit);
+    }
     if (seg->sharing.copies > 0) {
         cli_note(&o->run, "%d of them are mirror images or copies that share their texture: %.0f %% of it is saved",
                  seg->sharing.copies, 100.0 * seg->sharing.area);
@@ -203,18 +208,19 @@ static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *a
 
 int cli_unwrap(int argc, char **argv)
 {
-    unwrap_options o = {.run = {.verb = verb.name}, .def = sl_atlas_default()};
-    cli_option options[UNWRAP_OPTIONS];
+    unwrap_options o = {.run = {.verb = verb.name}, .pack = {.def = sl_pack_default()}, .def = sl_atlas_default()};
+    cli_option options[ALL_OPTIONS];
     const char *files[1];
     int32_t file_count = 0, *owned = NULL;
     cli_segment_preset(&o.segment, argc, argv);
     option_table(&o, options);
-    int code = cli_parse(&verb, options, UNWRAP_OPTIONS, argc, argv, 2, files, &file_count);
+    int code = cli_parse(&verb, options, ALL_OPTIONS, argc, argv, 2, files, &file_count);
     if (code >= 0 || (code = check_options(&o)) >= 0 || (code = cli_begin(&o.run)) >= 0) {
         return code;
     }
     cli_segment_apply(&o.segment);
-    o.def.pack.rotations = (sl_pack_rotations)o.rotations;
+    cli_pack_apply(&o.pack);
+    o.def.pack = o.pack.def;
     o.def.segment = o.segment.def;
     o.def.best = o.segment.best;
     o.def.optimize = o.segment.optimize;

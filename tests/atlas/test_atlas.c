@@ -176,6 +176,116 @@ static void bad_polygons_small_pages_and_too_few_charts_are_refused(void **state
     free(p);
 }
 
+/* A potato cut into its sectors: many charts. */
+static sl_atlas *unwrap_sectors(const potato *p, sl_atlas_def *def, int32_t *label)
+{
+    for (int32_t f = 0; f < p->polygons.nf; f++) {
+        label[f] = f / (RINGS + 1);
+    }
+    def->seams = SL_SEAMS_LABELS;
+    def->seam_input.label = label;
+    def->segment.flatten.max_stretch = 100.0;
+    return unwrap(&p->polygons, def);
+}
+
+/* The density as the written UVs have it: texels^2 over area, by the shoelace formula. */
+static double density_of(const sl_atlas *atlas, const sl_polygons *polygons, double width, double height)
+{
+    const sl_triangulation *t = atlas->triangulation;
+    double flat = 0.0, space = 0.0;
+    for (int32_t k = 0; k < t->nt; k++) {
+        double uv[3][2], x[3][3], n[3];
+        for (int i = 0; i < 3; i++) {
+            const int32_t h = t->corner[3 * k + i];
+            memcpy(uv[i], atlas->corner_uv + 2 * h, sizeof uv[i]);
+            memcpy(x[i], polygons->xyz + 3 * polygons->index[sl_input_corner(atlas->mesh, h)], sizeof x[i]);
+        }
+        for (int i = 0; i < 3; i++) {
+            const int j = (i + 1) % 3, l = (i + 2) % 3;
+            n[i] = (x[1][j] - x[0][j]) * (x[2][l] - x[0][l]) - (x[1][l] - x[0][l]) * (x[2][j] - x[0][j]);
+        }
+        space += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int i = 0; i < 3; i++) {
+            const int j = (i + 1) % 3;
+            flat += 0.5 * width * height * (uv[i][0] * uv[j][1] - uv[j][0] * uv[i][1]);
+        }
+    }
+    return sqrt(flat / space);
+}
+
+static void check_tiles(const sl_atlas *atlas)
+{
+    for (int32_t h = 0; h < atlas->mesh->nh; h++) {
+        const int32_t page = atlas->placement[atlas->segmentation->face_chart[atlas->mesh->face[h]]].page;
+        const double u = atlas->corner_uv[2 * h] - page % 10, v = atlas->corner_uv[2 * h + 1] - page / 10;
+        assert_true(page >= 0 && page < atlas->pack.pages);
+        assert_true(u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0);
+    }
+}
+
+static void pages_become_tiles_of_the_density_asked_for(void **state)
+{
+    (void)state;
+    potato *p = potato_make(1.3);
+    int32_t *label = sl_calloc(p->polygons.nf, sizeof *label);
+    sl_atlas_def def = small_def();
+    def.pack.height = 300;
+    sl_atlas *atlas = unwrap_sectors(p, &def, label);
+    assert_true(atlas->check.passed && atlas->pack.pages == 1);
+    assert_true(test_near_rel(atlas->texels_a_unit, density_of(atlas, &p->polygons, 512, 300), 1e-6));
+    check_tiles(atlas);
+    def.pack.density = 1.9 * atlas->texels_a_unit;
+    def.pack.pages = 40;
+    sl_atlas_free(atlas);
+    atlas = unwrap_sectors(p, &def, label);
+    assert_true(atlas->check.passed && atlas->pack.pages > 2);
+    assert_true(test_near_rel(atlas->texels_a_unit, def.pack.density, 1e-9));
+    assert_true(test_near_rel(density_of(atlas, &p->polygons, 512, 300), def.pack.density, 1e-6));
+    check_tiles(atlas);
+    sl_atlas_free(atlas);
+    def.pack.pages = 2;
+    sl_diag diag = sl_diag_none();
+    assert_int_equal(sl_unwrap(&p->polygons, &def, NULL, &atlas, &diag), SL_INFEASIBLE);
+    assert_non_null(strstr(diag.reason, "2 pages of 512 x 300 texels at that density"));
+    sl_free(label);
+    free(p);
+}
+
+static void overlaps_are_seen_on_every_page(void **state)
+{
+    (void)state;
+    potato *p = potato_make(1.6);
+    int32_t *label = sl_calloc(p->polygons.nf, sizeof *label), moved = -1, onto = -1;
+    sl_atlas_def def = small_def();
+    def.pack.pages = 3;
+    sl_atlas *atlas = unwrap_sectors(p, &def, label);
+    const sl_segmentation *seg = atlas->segmentation;
+    assert_true(atlas->check.passed && atlas->pack.pages == 3);
+    for (int32_t c = 0; c < seg->nchart; c++) {
+        if (atlas->placement[c].page == 2 && seg->chart[c].count > 2) {
+            onto = moved;
+            moved = c;
+        }
+    }
+    assert_true(onto >= 0);
+    double shift[2];
+    const sl_mesh *m = atlas->mesh;
+    const int32_t from = m->face_first[seg->face[seg->chart[moved].first]],
+                  to = m->face_first[seg->face[seg->chart[onto].first + 1]];
+    shift[0] = atlas->corner_uv[2 * to] - atlas->corner_uv[2 * from];
+    shift[1] = atlas->corner_uv[2 * to + 1] - atlas->corner_uv[2 * from + 1];
+    for (int32_t h = 0; h < m->nh; h++) {
+        for (int k = 0; k < 2 && seg->face_chart[m->face[h]] == moved; k++) {
+            atlas->corner_uv[2 * h + k] += shift[k];
+        }
+    }
+    assert_int_equal(sl_atlas_verify(atlas, &def, NULL), SL_OK);
+    assert_true(!atlas->check.passed && !atlas->check.proven && atlas->check.overlapping_texels > 20);
+    sl_atlas_free(atlas);
+    sl_free(label);
+    free(p);
+}
+
 static bool refuse(void *user, const char *stage, double fraction)
 {
     (void)stage, (void)fraction;
@@ -248,6 +358,8 @@ int main(void)
         cmocka_unit_test(the_check_sees_a_flip_an_overlap_and_a_crossing_border),
         cmocka_unit_test(seams_of_the_users_that_leave_no_disk_are_infeasible),
         cmocka_unit_test(bad_polygons_small_pages_and_too_few_charts_are_refused),
+        cmocka_unit_test(pages_become_tiles_of_the_density_asked_for),
+        cmocka_unit_test(overlaps_are_seen_on_every_page),
         cmocka_unit_test(unwrapping_can_be_cancelled),
         cmocka_unit_test(the_sidecar_says_what_the_atlas_is),
         cmocka_unit_test(the_sidecar_stands_beside_its_atlas),

@@ -387,6 +387,21 @@ contains err.txt 'no UVs to pack'
 expect 2 "$seamlab" pack uv1.obj
 expect 2 "$seamlab" pack uv1.obj -o none.off
 expect 2 "$seamlab" pack uv1.obj -o none.obj --rotations left
+
+# --- unwrap onto pages: the density asked for, copies where their sources are, every page checked
+expect 0 "$seamlab" unwrap body/body.obj -o unwrapped.obj --density 14 --resolution 256 --margin 1 --pages 9 --json
+contains out.txt '"certified":true.*"pages":1,"texelsAUnit":14.0,"copies":3'
+expect 0 "$seamlab" measure unwrapped.obj --json
+contains out.txt '"ovIn":0.0,"ovX":0.0,"copies":3,'
+expect 0 "$seamlab" unwrap ball/sphere.obj -o unwrapped.obj --symmetry off --max-stretch 1.02 --density 100 --resolution 256 --margin 1 --pages 9
+contains err.txt 'on 4 pages, 100 texels a unit'
+contains unwrapped.atlas.json '"page":3,'
+json unwrapped.atlas.json
+expect 0 "$seamlab" overlap unwrapped.obj --exact
+expect 4 "$seamlab" unwrap body/body.obj -o none.obj --density 1e9 --pages 2
+contains err.txt '2 pages of 2048 x 2048 texels at that density'
+expect 2 "$seamlab" unwrap body/body.obj -o none.obj --pages 0
+expect 2 "$seamlab" unwrap body/body.obj -o none.obj --density -1
 no_file none.obj none.off none.atlas.json
 
 # --- seams of one's own: segment writes what unwrap reads
