@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "pack/field.h"
+#include "pack/pairs.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,9 +33,11 @@ typedef struct separation {
     double *angle;  /* count x turns */
     sl_sheet sheet, coarse;
     sl_spot *spot;
-    int32_t *weight, *overlap; /* count x count: by pair; overlaps in cells */
-    int32_t *owner;            /* a page's cells: the first chart there */
-    int32_t *order;            /* charts to be moved */
+    sl_pack_pairs pairs; /* those that overlapped since the scale was begun; all others have the first weight */
+    int32_t *box;      /* 4 count: left, right, bottom, top of each chart, a side after another; empty on other pages */
+    int32_t *owner;    /* a page's cells: the first chart there */
+    int32_t *order;    /* charts to be moved */
+    uint8_t *overlaps; /* count */
     sl_field near, far, far_coarse;
     int32_t *line; /* costs of a row of places */
     sl_rng rng;
@@ -56,14 +59,33 @@ static const sl_mask *mask_of(const separation *s, int32_t chart)
     return mask_at(s, chart, s->spot[chart].turn);
 }
 
+static int32_t weight_of(const separation *s, int32_t a, int32_t b)
+{
+    const int32_t k = sl_pack_pairs_find(&s->pairs, a, b);
+    return k >= 0 ? s->pairs.pair[k].weight : FIRST_WEIGHT;
+}
+
+static void note_box(separation *s, int32_t chart)
+{
+    const int32_t n = s->task->count;
+    const sl_mask *mask = mask_of(s, chart);
+    const sl_spot *at = &s->spot[chart];
+    s->box[chart] = at->x;
+    s->box[(int64_t)n + chart] = at->x + mask->width;
+    s->box[2 * (int64_t)n + chart] = at->y;
+    s->box[3 * (int64_t)n + chart] = at->y + mask->height;
+}
+
 /* The weights of all others in a window. */
 static void fill_field(const separation *s, int32_t chart, const int32_t low[2], const int32_t size[2], sl_field *field)
 {
-    const int32_t *weight = s->weight + (int64_t)chart * s->task->count;
+    const int32_t n = s->task->count, page = s->spot[chart].page, right = low[0] + size[0], top = low[1] + size[1];
     sl_field_begin(field, low, size);
-    for (int32_t c = 0; c < s->task->count; c++) {
-        if (c != chart && s->spot[c].page == s->spot[chart].page) {
-            sl_field_add(field, mask_of(s, c), s->spot[c].x, s->spot[c].y, weight[c]);
+    for (int32_t c = 0; c < n; c++) { /* most are elsewhere: their boxes tell */
+        const bool near = (s->box[c] < right) & (s->box[(int64_t)n + c] > low[0]) & (s->box[2 * (int64_t)n + c] < top) &
+                          (s->box[3 * (int64_t)n + c] > low[1]);
+        if (near && c != chart && s->spot[c].page == page) {
+            sl_field_add(field, mask_of(s, c), s->spot[c].x, s->spot[c].y, weight_of(s, chart, c));
         }
     }
     sl_field_sum(field);
@@ -180,56 +202,65 @@ static void move_chart(separation *s, int32_t chart)
     s->spot[chart].turn = best.turn;
     s->spot[chart].x = best.x;
     s->spot[chart].y = best.y;
+    note_box(s, chart);
 }
 
-/* Counts the cells of one page that charts share with the first one there. */
-static int64_t count_page(separation *s, int32_t page)
+/* Adds the cells of one page that charts share with the first one there. */
+static sl_status count_page(separation *s, int32_t page, int64_t *total)
 {
+    sl_status status = SL_OK;
     const int32_t n = s->task->count, width = s->sheet.width;
-    int64_t total = 0;
     memset(s->owner, 0xff, (size_t)((int64_t)width * s->sheet.height) * sizeof *s->owner);
     for (int32_t c = 0; c < n; c++) {
         const sl_mask *mask = mask_of(s, c);
+        int32_t other = -1, pair = -1; /* the last one met */
         for (int32_t r = 0; s->spot[c].page == page && r < mask->count; r++) {
             int32_t *owner =
                 s->owner + (int64_t)(s->spot[c].y + mask->run[r].row) * width + s->spot[c].x + mask->run[r].left;
             for (int32_t x = 0; x < mask->run[r].length; x++) {
                 if (owner[x] < 0) {
                     owner[x] = c;
-                } else {
-                    s->overlap[(int64_t)c * n + owner[x]]++;
-                    s->overlap[(int64_t)owner[x] * n + c]++;
-                    total++;
+                    continue;
                 }
+                if (owner[x] != other) {
+                    other = owner[x];
+                    SL_TRY(sl_pack_pairs_get(&s->pairs, c, other, FIRST_WEIGHT, &pair));
+                }
+                s->pairs.pair[pair].overlap++;
+                ++*total;
             }
         }
     }
-    return total;
+cleanup:
+    return status;
 }
 
-static int64_t count_overlaps(separation *s)
+static sl_status count_overlaps(separation *s, int64_t *total)
 {
-    int64_t total = 0;
-    const int64_t pairs = (int64_t)s->task->count * s->task->count;
-    memset(s->overlap, 0, (size_t)pairs * sizeof *s->overlap);
-    for (int32_t p = 0; p < s->task->pages; p++) {
-        total += count_page(s, p);
+    sl_status status = SL_OK;
+    *total = 0;
+    for (int32_t k = 0; k < s->pairs.count; k++) {
+        s->pairs.pair[k].overlap = 0;
     }
-    return total;
+    for (int32_t p = 0; p < s->task->pages; p++) {
+        SL_TRY(count_page(s, p, total));
+    }
+cleanup:
+    return status;
 }
 
 /* Pairs that overlap weigh more from now on, those that do not weigh less. */
 static void change_weights(separation *s)
 {
-    const int64_t pairs = (int64_t)s->task->count * s->task->count;
     int32_t most = 1;
-    for (int64_t k = 0; k < pairs; k++) {
-        most = s->overlap[k] > most ? s->overlap[k] : most;
+    for (int32_t k = 0; k < s->pairs.count; k++) {
+        most = s->pairs.pair[k].overlap > most ? s->pairs.pair[k].overlap : most;
     }
-    for (int64_t k = 0; k < pairs; k++) {
-        const double gain = s->overlap[k] > 0 ? least_gain + (most_gain - least_gain) * s->overlap[k] / most : decay;
-        s->weight[k] = (int32_t)fmax(FIRST_WEIGHT,
-                                     fmin(LAST_WEIGHT, gain > 1.0 ? ceil(gain * s->weight[k]) : gain * s->weight[k]));
+    for (int32_t k = 0; k < s->pairs.count; k++) {
+        sl_pack_pair *p = &s->pairs.pair[k];
+        const double gain = p->overlap > 0 ? least_gain + (most_gain - least_gain) * p->overlap / most : decay;
+        p->weight =
+            (int32_t)fmax(FIRST_WEIGHT, fmin(LAST_WEIGHT, gain > 1.0 ? ceil(gain * p->weight) : gain * p->weight));
     }
 }
 
@@ -238,12 +269,14 @@ static int32_t list_movers(separation *s)
 {
     const int32_t n = s->task->count;
     int32_t count = 0;
+    memset(s->overlaps, 0, (size_t)n);
+    for (int32_t k = 0; k < s->pairs.count; k++) {
+        const sl_pack_pair *p = &s->pairs.pair[k];
+        s->overlaps[p->chart[0]] |= p->overlap > 0;
+        s->overlaps[p->chart[1]] |= p->overlap > 0;
+    }
     for (int32_t c = 0; c < n; c++) {
-        bool overlaps = false;
-        for (int32_t d = 0; d < n && !overlaps; d++) {
-            overlaps = s->overlap[(int64_t)c * n + d] > 0;
-        }
-        if (overlaps) {
+        if (s->overlaps[c] != 0) {
             s->order[count++] = c;
         }
     }
@@ -255,17 +288,19 @@ static int32_t list_movers(separation *s)
     return count;
 }
 
-/* Moves charts until none overlaps another. false: given up. */
-static bool push_apart(separation *s)
+/* Moves charts until none overlaps another. *apart = false: given up. */
+static sl_status push_apart(separation *s, bool *apart)
 {
+    sl_status status = SL_OK;
     int64_t least = INT64_MAX;
-    for (int64_t k = 0; k < (int64_t)s->task->count * s->task->count; k++) {
-        s->weight[k] = FIRST_WEIGHT;
-    }
+    *apart = false;
+    sl_pack_pairs_wipe(&s->pairs);
     for (int32_t sweep = 0, since = 0; since <= s->def->sweeps && sweep < MAX_SWEEPS; sweep++, since++) {
-        const int64_t total = count_overlaps(s);
-        if (total == 0) {
-            return true;
+        int64_t total;
+        SL_TRY(count_overlaps(s, &total));
+        *apart = total == 0;
+        if (*apart) {
+            break;
         }
         if (total < least) {
             least = total;
@@ -279,7 +314,8 @@ static bool push_apart(separation *s)
             move_chart(s, s->order[i]);
         }
     }
-    return false;
+cleanup:
+    return status;
 }
 
 /* Every chart where it stood, as far as the page allows. false: one is larger than the page. */
@@ -298,6 +334,7 @@ static bool take_places(separation *s, const sl_pose *pose)
             at[i] = at[i] < 0 ? 0 : at[i] + size[i] > page[i] ? page[i] - size[i] : at[i];
         }
         s->spot[c] = (sl_spot){pose[c].page, 0, at[0], at[1]};
+        note_box(s, c);
     }
     return true;
 }
@@ -328,7 +365,10 @@ static sl_status try_scale(separation *s, double scale, sl_arrangement *best, bo
     if (s->def->far) {
         SL_TRY(sl_sheet_init(s->task, scale, s->def->grid / s->factor, s->turns, s->angle, &s->coarse));
     }
-    *fits = take_places(s, best->pose) && push_apart(s);
+    *fits = take_places(s, best->pose);
+    if (*fits) {
+        SL_TRY(push_apart(s, fits));
+    }
     if (*fits) {
         best->scale = scale;
         sl_pose_from_spots(&s->sheet, s->spot, best->pose);
@@ -343,8 +383,9 @@ static void separation_clear(separation *s)
 {
     sl_free(s->angle);
     sl_free(s->spot);
-    sl_free(s->weight);
-    sl_free(s->overlap);
+    sl_pack_pairs_clear(&s->pairs);
+    sl_free(s->box);
+    sl_free(s->overlaps);
     sl_free(s->owner);
     sl_free(s->order);
     sl_free(s->line);
@@ -367,15 +408,16 @@ static sl_status separation_init(separation *s)
     s->rng = sl_rng_seed(s->def->seed);
     s->angle = sl_alloc((int64_t)n * s->turns, sizeof *s->angle);
     s->spot = sl_alloc(n, sizeof *s->spot);
-    s->weight = sl_alloc((int64_t)n * n, sizeof *s->weight);
-    s->overlap = sl_alloc((int64_t)n * n, sizeof *s->overlap);
+    s->box = sl_alloc(4 * (int64_t)n, sizeof *s->box);
+    s->overlaps = sl_alloc(n, sizeof *s->overlaps);
     s->owner = sl_alloc((int64_t)grid * rows, sizeof *s->owner);
     s->order = sl_alloc(n, sizeof *s->order);
     s->line = sl_alloc(grid + 1, sizeof *s->line);
-    if (s->angle == NULL || s->spot == NULL || s->weight == NULL || s->overlap == NULL || s->owner == NULL ||
+    if (s->angle == NULL || s->spot == NULL || s->box == NULL || s->overlaps == NULL || s->owner == NULL ||
         s->order == NULL || s->line == NULL) {
         return SL_OUT_OF_MEMORY;
     }
+    SL_TRY(sl_pack_pairs_init(&s->pairs));
     SL_TRY(sl_field_init(grid, rows, &s->near));
     SL_TRY(sl_field_init(s->def->far ? grid : 1, s->def->far ? rows : 1, &s->far));
     SL_TRY(sl_field_init(grid / s->factor, rows / s->factor + 1, &s->far_coarse));
