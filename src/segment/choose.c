@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double SAME_SCORE = 1e-9; /* relative: scores that differ less are equal, the lower vector is taken */
+
 void sl_choice_clear(sl_choice *choice)
 {
     sl_free(choice->side);
@@ -236,7 +238,7 @@ static sl_status take_cut(const cut_search *s, sl_choice *choice)
     const int32_t n = s->piece->mesh->nf;
     int32_t best = 0;
     for (int32_t k = 1; k < s->npassing; k++) {
-        best = s->score[k] < s->score[best] ? k : best;
+        best = s->score[k] < s->score[best] - SAME_SCORE * fabs(s->score[best]) ? k : best;
     }
     uint8_t *side = sl_alloc(n, sizeof *side), *node_side = sl_alloc(s->graph->graph.n, sizeof *node_side);
     choice->side = sl_alloc(n, sizeof *choice->side);

@@ -190,9 +190,11 @@ static void cut_path(sl_mesh *mesh, loop_graph *g, int32_t end, sl_cut_list *lis
 sl_status sl_join_loops(sl_mesh *mesh, const double *weight, sl_cut_list *list)
 {
     sl_status status = SL_OK;
-    loop_graph g;
+    loop_graph g = {0};
+    double *leaning = NULL;
     *list = (sl_cut_list){sl_alloc(mesh->nh, sizeof *list->halfedge), 0};
-    SL_TRY(loop_graph_create(mesh, weight, &g));
+    SL_TRY(sl_lean_weights(mesh, weight, &leaning));
+    SL_TRY(loop_graph_create(mesh, leaning, &g));
     if (list->halfedge == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
@@ -210,6 +212,7 @@ sl_status sl_join_loops(sl_mesh *mesh, const double *weight, sl_cut_list *list)
     }
 cleanup:
     loop_graph_clear(&g);
+    sl_free(leaning);
     if (status != SL_OK) {
         sl_sew_list(mesh, list);
         sl_cut_list_clear(list);

@@ -23,6 +23,7 @@ typedef struct merge {
     sl_piece *piece;
     uint8_t *in_a;    /* facets of the piece */
     uint8_t *sewable; /* halfedges of the piece that may be sewn */
+    double *lean;     /* nh: factors that tell arcs of equal length apart */
     int32_t *arc;     /* halfedges of the longest common arc, on a's side, in order */
     int32_t narc;
 } merge;
@@ -32,6 +33,7 @@ static void merge_clear(merge *m)
     sl_piece_free(m->piece);
     sl_free(m->in_a);
     sl_free(m->sewable);
+    sl_free(m->lean);
     sl_free(m->arc);
 }
 
@@ -64,7 +66,7 @@ static double follow_arc(const merge *m, int32_t h, int32_t *arc, int32_t *count
         }
         seen[k] = 1;
         (*count)++;
-        length += sl_mesh_edge_length(m->piece->mesh, k);
+        length += sl_mesh_edge_length(m->piece->mesh, k) * m->lean[k];
     }
     return length;
 }
@@ -128,6 +130,7 @@ static sl_status merge_create(const sl_sewing *s, const sl_chart_job *a, const s
     for (int32_t h = 0; h < mesh->nh; h++) {
         m->sewable[h] = s->sewable[sl_piece_halfedge(m->piece, s->work, h)];
     }
+    SL_TRY(sl_lean_weights(mesh, NULL, &m->lean));
     SL_TRY(find_longest_arc(m));
 cleanup:
     return status;

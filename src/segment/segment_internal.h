@@ -22,6 +22,11 @@ SL_NODISCARD sl_status sl_piece_create(const sl_mesh *mesh, const sl_triangulati
                                        int32_t count, sl_piece **out);
 void sl_piece_free(sl_piece *piece); /* NULL is a no-op */
 
+/* The weights (mesh->nh, nullable = 1), edges near the mesh's centre made up to a millionth part dearer: of ways that
+ * are equally long one is then shorter than the others, but for those that a symmetry of the mesh takes to one another.
+ * *out is owned by the caller. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_lean_weights(const sl_mesh *mesh, const double *weight, double **out);
+
 /* Copies the weights of the parent's edges, where there are some (weight: parent->nh, nullable). SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_piece_weigh(sl_piece *piece, const sl_mesh *parent, const double *weight);
 

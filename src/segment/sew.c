@@ -9,13 +9,15 @@
 
 #define BATCH_MIN 8        /* merges tried at a time: independent of the number of threads */
 #define BATCH_SHARE 16     /* or this share of the charts */
+#define DIGITS 1e9         /* shares are told apart to */
 #define ATTEMPTS_A_CHART 8 /* bound on merges tried, for each chart at the start */
 
 /* Two charts with a common seam. */
 typedef struct pair {
     int32_t a, b;  /* numbers of charts, a < b */
     double length; /* of the common seam */
-    double share;  /* of the smaller perimeter */
+    double share;  /* of the smaller perimeter, to nine digits */
+    double weight; /* of all perimeters, to nine digits: between pairs of the same share, as where charts cap others */
 } pair;
 
 /* A merge that failed, by the charts' stamps. */
@@ -67,7 +69,10 @@ static int by_charts(const void *x, const void *y)
 static int by_share(const void *x, const void *y)
 {
     const pair *p = x, *q = y;
-    return p->share != q->share ? (p->share < q->share) - (p->share > q->share) : by_charts(x, y);
+    if (p->share != q->share) {
+        return p->share < q->share ? 1 : -1;
+    }
+    return p->weight != q->weight ? (p->weight < q->weight) - (p->weight > q->weight) : by_charts(x, y);
 }
 
 static int by_stamps(const void *x, const void *y)
@@ -97,9 +102,19 @@ static int by_charts_then_halfedge(const void *x, const void *y)
     return order != 0 ? order : (p > q) - (p < q);
 }
 
+/* So that equal ones compare as equal, whatever the order in which they were summed. */
+static double to_nine_digits(double x)
+{
+    return rint(DIGITS * x) / DIGITS;
+}
+
 static void sum_pairs(sew_state *s)
 {
     int64_t n = 0;
+    double all = 0.0;
+    for (int64_t c = 0; c < s->charts->count; c++) {
+        all += s->perimeter[c];
+    }
     for (int64_t k = 0; k < s->npairs; k++) {
         if (n > 0 && by_charts(&s->pairs[n - 1], &s->pairs[k]) == 0) {
             s->pairs[n - 1].length += s->pairs[k].length;
@@ -110,7 +125,8 @@ static void sum_pairs(sew_state *s)
     s->npairs = n;
     for (int64_t k = 0; k < n; k++) {
         const double smaller = fmin(s->perimeter[s->pairs[k].a], s->perimeter[s->pairs[k].b]);
-        s->pairs[k].share = smaller > 0.0 ? s->pairs[k].length / smaller : 0.0;
+        s->pairs[k].share = smaller > 0.0 ? to_nine_digits(s->pairs[k].length / smaller) : 0.0;
+        s->pairs[k].weight = all > 0.0 ? to_nine_digits(s->pairs[k].length / all) : 0.0;
     }
 }
 
@@ -131,7 +147,7 @@ static sl_status collect_pairs(sew_state *s)
         const int32_t b = m->sew[h] >= 0 ? s->chart_of[m->face[m->sew[h]]] : a;
         if (a < b && s->sewable[h]) {
             SL_TRY(sl_reserve((void **)&s->pairs, &s->pair_capacity, s->npairs + 1, sizeof *s->pairs));
-            s->pairs[s->npairs++] = (pair){a, b, length, (double)h};
+            s->pairs[s->npairs++] = (pair){a, b, length, (double)h, 0.0};
         }
     }
     if (s->npairs > 0) {

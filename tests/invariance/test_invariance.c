@@ -319,7 +319,7 @@ static void charts_are_the_same_where_eigenvalues_are_apart(void **state)
 static void atlases_are_as_good_where_eigenvalues_coincide(void **state)
 {
     (void)state;
-    static const char *const names[] = {"slab", "beam", "plate"};
+    static const char *const names[] = {"slab", "beam", "plate", "chain"};
     test_rng rng = test_rng_seed(0x1a8);
     for (size_t k = 0; k < SL_COUNTOF(names); k++) {
         sl_polygons p;
