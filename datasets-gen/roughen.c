@@ -180,15 +180,19 @@ typedef struct rough_vertex {
 
 static void gather(const gen_builder *b, rough_vertex *vertex)
 {
-    for (int32_t c = 0; c < b->nc; c++) {
-        const int32_t v = b->index[c], w = b->index[next_corner(c)], x = b->index[next_corner(next_corner(c))];
-        double p[3], q[3], n[3];
-        sl_vec3_sub(b->xyz + 3 * (int64_t)w, b->xyz + 3 * (int64_t)v, p);
-        sl_vec3_sub(b->xyz + 3 * (int64_t)x, b->xyz + 3 * (int64_t)v, q);
-        sl_vec3_cross(p, q, n);
-        sl_vec3_add(vertex[v].normal, n, vertex[v].normal);
-        vertex[v].length += sl_vec3_norm(p);
-        vertex[v].edges += 1.0;
+    for (int64_t f = 0; f < b->nf; f++) {
+        const int32_t first = b->first[f], end = b->first[f + 1];
+        for (int32_t c = first; c < end; c++) {
+            const int32_t v = b->index[c], w = b->index[c + 1 < end ? c + 1 : first];
+            const int32_t x = b->index[c > first ? c - 1 : end - 1];
+            double p[3], q[3], n[3];
+            sl_vec3_sub(b->xyz + 3 * (int64_t)w, b->xyz + 3 * (int64_t)v, p);
+            sl_vec3_sub(b->xyz + 3 * (int64_t)x, b->xyz + 3 * (int64_t)v, q);
+            sl_vec3_cross(p, q, n);
+            sl_vec3_add(vertex[v].normal, n, vertex[v].normal);
+            vertex[v].length += sl_vec3_norm(p);
+            vertex[v].edges += 1.0;
+        }
     }
 }
 

@@ -205,13 +205,20 @@ static void relaxing_takes_steps_out_and_leaves_heights_alone(void **state)
     gen_cage_clear(&cage);
 }
 
+/* An ellipsoid of quads. */
+static gen_builder ball(void)
+{
+    sl_generated *sphere = NULL;
+    gen_builder b = {0};
+    assert_int_equal(gen_sphere(0, 1, &sphere), SL_OK);
+    gen_append(&b, sphere, (const double[]){1.0, 0.0, 0.0, 0.0, 0.0, 1.3, 0.0, 0.0, 0.0, 0.0, 0.8, 0.0});
+    sl_generated_free(sphere);
+    return b;
+}
+
 static gen_builder rough_ball(sl_rng *rng, int32_t passes, double noise)
 {
-    sl_generated *ball = NULL;
-    gen_builder b = {0};
-    assert_int_equal(gen_sphere(0, 1, &ball), SL_OK);
-    gen_append(&b, ball, (const double[]){1.0, 0.0, 0.0, 0.0, 0.0, 1.3, 0.0, 0.0, 0.0, 0.0, 0.8, 0.0});
-    sl_generated_free(ball);
+    gen_builder b = ball();
     gen_split_quads(&b, rng);
     gen_flip_edges(&b, rng, passes);
     gen_add_noise(&b, rng, noise);
@@ -246,15 +253,12 @@ static void roughening_keeps_the_surface_and_changes_its_triangles(void **state)
     }
 }
 
-/* As much along the normal as announced: a third of reach^2 there, a sixth across it. */
-static void noise_is_larger_along_the_normal_than_across(void **state)
+/* Share of the squared offsets that lies along the normal. */
+static double share_along_normal(const gen_builder *plain, const gen_builder *b)
 {
-    (void)state;
-    sl_rng rng = sl_rng_seed(11), again = sl_rng_seed(11);
-    gen_builder plain = rough_ball(&rng, 2, 0.0), b = rough_ball(&again, 2, 0.1);
     double along = 0.0, all = 0.0;
-    for (int64_t v = 0; v < b.nv; v++) {
-        const double *p = plain.xyz + 3 * v, *q = b.xyz + 3 * v;
+    for (int64_t v = 0; v < b->nv; v++) {
+        const double *p = plain->xyz + 3 * v, *q = b->xyz + 3 * v;
         const double n[3] = {p[0], p[1] / (1.3 * 1.3), p[2] / (0.8 * 0.8)}; /* of the ellipsoid */
         double dot = 0.0, norm = 0.0;
         for (int k = 0; k < 3; k++) {
@@ -264,7 +268,35 @@ static void noise_is_larger_along_the_normal_than_across(void **state)
         }
         along += dot * dot / norm;
     }
-    assert_true(test_near(along / all, 2.0 / 3.0, 0.05));
+    return along / all;
+}
+
+/* As much along the normal as announced: a third of reach^2 there, a sixth across it. */
+static void noise_is_larger_along_the_normal_than_across(void **state)
+{
+    (void)state;
+    sl_rng rng = sl_rng_seed(11), again = sl_rng_seed(11);
+    gen_builder plain = rough_ball(&rng, 2, 0.0), b = rough_ball(&again, 2, 0.1);
+    assert_true(test_near(share_along_normal(&plain, &b), 2.0 / 3.0, 0.05));
+    gen_clear(&plain);
+    gen_clear(&b);
+}
+
+/* Facets of four corners and of three at the poles: the number of all corners need not be a multiple of three. */
+static void noise_of_quads_is_as_that_of_triangles(void **state)
+{
+    (void)state;
+    sl_rng rng = sl_rng_seed(13);
+    gen_builder plain = ball(), b = ball();
+    double farthest = 0.0;
+    gen_add_noise(&b, &rng, 0.1);
+    assert_false(b.failed);
+    for (int64_t i = 0; i < 3 * b.nv; i++) {
+        assert_true(isfinite(b.xyz[i]));
+        farthest = fmax(farthest, fabs(b.xyz[i] - plain.xyz[i]));
+    }
+    assert_true(farthest > 0.002 && farthest < 0.02);
+    assert_true(test_near(share_along_normal(&plain, &b), 2.0 / 3.0, 0.05));
     gen_clear(&plain);
     gen_clear(&b);
 }
@@ -303,6 +335,7 @@ int main(void)
         cmocka_unit_test(relaxing_takes_steps_out_and_leaves_heights_alone),
         cmocka_unit_test(roughening_keeps_the_surface_and_changes_its_triangles),
         cmocka_unit_test(noise_is_larger_along_the_normal_than_across),
+        cmocka_unit_test(noise_of_quads_is_as_that_of_triangles),
         cmocka_unit_test(a_builder_that_failed_stays_failed_and_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
