@@ -141,6 +141,7 @@ typedef enum sl_opt_effort {
     SL_OPT_WARM,      /* from the map at hand; from nothing where that fails */
     SL_OPT_WARM_ONLY, /* from the map at hand or not at all */
     SL_OPT_COLD,      /* from nothing; once more with a simple border where that overlaps */
+    SL_OPT_GUESSED,   /* the same, from about where the vertices will be: the map at hand may have flips */
     SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */
 } sl_opt_effort;
 
@@ -154,8 +155,9 @@ SL_NODISCARD sl_status sl_opt_certify(const sl_patch *patch, const double *uv, s
 /* Solves every chart again with state->w. */
 SL_NODISCARD sl_status sl_opt_resolve(sl_opt_state *state);
 
-/* Lays every chart flat from nothing. *all = false where one has no embedding. */
-SL_NODISCARD sl_status sl_opt_unfold(sl_opt_state *state, bool *all);
+/* Lays every chart flat from nothing, or from the maps at hand as guesses, flips or not. *all = false where one has no
+ * embedding. */
+SL_NODISCARD sl_status sl_opt_unfold(sl_opt_state *state, bool guessed, bool *all);
 
 /* The weight of the energy that meets both targets best; solves every chart with it. */
 SL_NODISCARD sl_status sl_opt_balance(sl_opt_state *state);
@@ -198,6 +200,14 @@ SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);
 /* Lays parts of seams anew where a way that is cheaper and turns less leads between the same ends and the targets stay
  * met. */
 SL_NODISCARD sl_status sl_opt_straighten(sl_opt_state *state);
+
+/* Cuts and sews in turn while that lowers the price. */
+SL_NODISCARD sl_status sl_opt_search(sl_opt_state *state);
+
+/* Starts and searches: on the piece itself, or for a large one on coarse meshes of it first. *done = false where no
+ * valid charts were found. */
+SL_NODISCARD sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment,
+                                    const sl_triangulation *triangulation, bool *done);
 
 /* The first charts: spectral cuts of the surface's mesh, recursing where one fails or exceeds def->start_stretch.
  * *started = false where none was found. */

@@ -1,5 +1,5 @@
 /* The optimiser as a cutter of the segmentation: one piece in, its seams and UVs out. */
-#include "optimize/decimate_internal.h"
+#include "optimize/optimize_internal.h"
 
 #include "base/memory.h"
 
@@ -7,10 +7,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-static const int ROUNDS = 3;  /* of cutting and sewing */
-static const int CARRIES = 3; /* of the proxy's seams */
-static const int32_t PROXY_TRIANGLES = 4000, PROXY_FROM = 30000;
-static const double ENOUGH = 0.93; /* share of the budget that is well spent */
+static const int ROUNDS = 3; /* of cutting and sewing */
 
 sl_optimize_def sl_optimize_default(void)
 {
@@ -64,8 +61,7 @@ static double price(const sl_opt_state *state)
     return state->def->seam_cost * sum / state->surface->unit + state->def->chart_cost * (double)state->nchart;
 }
 
-/* Cuts and sews in turn while that lowers the price. */
-static sl_status search(sl_opt_state *state)
+sl_status sl_opt_search(sl_opt_state *state)
 {
     sl_status status = SL_OK;
     double best = HUGE_VAL;
@@ -88,103 +84,6 @@ cleanup:
     return status;
 }
 
-/* The coarse surface of a large piece. */
-typedef struct proxy {
-    sl_mesh *mesh;
-    sl_triangulation *triangulation;
-    int32_t *vertex;
-    sl_opt_surface surface;
-    sl_optimize_def def; /* targets as the coarse charts must meet them for the fine ones to do so */
-    sl_opt_state state;
-} proxy;
-
-static void proxy_clear(proxy *p)
-{
-    sl_opt_state_clear(&p->state);
-    sl_opt_surface_clear(&p->surface);
-    sl_triangulation_free(p->triangulation);
-    sl_mesh_free(p->mesh);
-    sl_free(p->vertex);
-}
-
-static sl_status proxy_init(const sl_opt_state *fine, const sl_segment_def *segment, proxy *p, bool *started)
-{
-    sl_status status = SL_OK;
-    p->def = *fine->def;
-    SL_TRY(sl_opt_decimate(fine->surface->patch, PROXY_TRIANGLES, &p->mesh, &p->vertex));
-    SL_TRY(sl_triangulation_create(p->mesh, &p->triangulation));
-    SL_TRY(sl_opt_surface_init(p->mesh, p->triangulation, NULL, &p->surface));
-    SL_TRY(sl_opt_state_init(&p->surface, &p->def, fine->context, &p->state));
-    SL_TRY(sl_opt_start(&p->state, segment, p->triangulation, started));
-cleanup:
-    return status;
-}
-
-/* The targets of the proxy from what came of its charts: the same share of the budget is left there as here. */
-static void correct_targets(const sl_opt_state *fine, proxy *p)
-{
-    sl_opt_total there, here;
-    sl_opt_totals(fine, &here);
-    sl_opt_totals(&p->state, &there);
-    const double stretch = fmax(here.stretch - 1.0, 1e-6) / fmax(there.stretch - 1.0, 1e-6);
-    const double angle = fmax(here.angle - 1.0, 1e-6) / fmax(there.angle - 1.0, 1e-6);
-    p->def.target_stretch = 1.0 + (fine->def->target_stretch - 1.0) / fmin(fmax(stretch, 0.5), 2.0);
-    p->def.target_angle = 1.0 + (fine->def->target_angle - 1.0) / fmin(fmax(angle, 0.5), 2.0);
-}
-
-/* Searches on the proxy, carries the seams over, and corrects the proxy's targets until the surface's are met and not
- * much is left of them. *done = false: the seams could not be carried over. */
-static sl_status search_proxy(sl_opt_state *fine, proxy *p, bool *done)
-{
-    sl_status status = SL_OK;
-    for (int k = 0; k < CARRIES; k++) {
-        sl_opt_total total;
-        SL_TRY(search(&p->state));
-        sl_opt_uncut(fine);
-        SL_TRY(sl_opt_carry(&p->state, p->vertex, fine, done));
-        if (!*done) {
-            break;
-        }
-        SL_TRY(sl_opt_balance(fine));
-        sl_opt_totals(fine, &total);
-        const double share = fmax((total.stretch - 1.0) / fmax(fine->def->target_stretch - 1.0, 1e-9),
-                                  (total.angle - 1.0) / fmax(fine->def->target_angle - 1.0, 1e-9));
-        if (share <= 1.0 && share >= ENOUGH) {
-            break;
-        }
-        correct_targets(fine, p);
-    }
-    fine->info = p->state.info;
-cleanup:
-    return status;
-}
-
-/* On the piece itself, or for a large one on its proxy first. */
-static sl_status optimise(sl_opt_state *state, const sl_segment_def *segment, const sl_triangulation *triangulation,
-                          bool *done)
-{
-    sl_status status = SL_OK;
-    proxy p = {0};
-    *done = false;
-    if (state->surface->patch->nt > PROXY_FROM) {
-        SL_TRY(proxy_init(state, segment, &p, done));
-        if (*done) {
-            SL_TRY(search_proxy(state, &p, done));
-        }
-    }
-    if (*done) {
-        SL_TRY(sl_opt_cut(state)); /* what is still missing */
-    } else {
-        SL_TRY(sl_opt_start(state, segment, triangulation, done));
-        if (*done) {
-            SL_TRY(search(state));
-        }
-    }
-cleanup:
-    proxy_clear(&p);
-    return status;
-}
-
 static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *triangulation, const sl_segment_def *def,
                            const sl_context *context, double *corner_uv, bool *done)
 {
@@ -198,7 +97,7 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
         goto cleanup; /* nothing but degenerate facets */
     }
     SL_TRY(sl_opt_state_init(&surface, o->def, context, &state));
-    SL_TRY(optimise(&state, def, triangulation, done));
+    SL_TRY(sl_opt_piece(&state, def, triangulation, done));
     if (*done) {
         sl_opt_total total;
         sl_opt_totals(&state, &total);

@@ -144,6 +144,10 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_
     } else if (effort == SL_OPT_WARM || effort == SL_OPT_WARM_ONLY) {
         SL_TRY(solve_warm(&a, uv, embedded));
     }
+    if (effort == SL_OPT_GUESSED) {
+        memcpy(a.start, uv, 2 * (size_t)patch->nv * sizeof *uv);
+        a.def.guess = a.start;
+    }
     if (!solved && !*embedded && effort != SL_OPT_WARM_ONLY) {
         SL_TRY(solve_cold(&a, effort == SL_OPT_SEWN ? 1 : 2, uv, embedded));
     }
@@ -192,8 +196,9 @@ static void take(sl_opt_state *state, int64_t c, double *uv, const sl_opt_sums *
     }
 }
 
-/* Every chart once more, side by side; *all = every one has an embedding. */
-static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool *all)
+/* Every chart once more, side by side; *all = every one has an embedding. Charts without keep the map they have; or
+ * all do where one has none, if `together`. */
+static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool together, bool *all)
 {
     sl_status status = SL_OK;
     const int64_t n = state->nchart;
@@ -213,7 +218,9 @@ static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool *all)
     }
     for (int64_t c = 0; c < n; c++) {
         *all = *all && r.embedded[c];
-        if (r.embedded[c]) { /* otherwise the chart keeps the map it has */
+    }
+    for (int64_t c = 0; c < n; c++) {
+        if (r.embedded[c] && (*all || !together)) {
             take(state, c, r.uv[c], &r.sums[c]);
             r.uv[c] = NULL;
         }
@@ -232,12 +239,12 @@ cleanup:
 sl_status sl_opt_resolve(sl_opt_state *state)
 {
     bool all;
-    return resolve(state, SL_OPT_WARM, &all);
+    return resolve(state, SL_OPT_WARM, false, &all);
 }
 
-sl_status sl_opt_unfold(sl_opt_state *state, bool *all)
+sl_status sl_opt_unfold(sl_opt_state *state, bool guessed, bool *all)
 {
-    return resolve(state, SL_OPT_COLD, all);
+    return resolve(state, guessed ? SL_OPT_GUESSED : SL_OPT_COLD, false, all);
 }
 
 /* ln of the share of the stretch budget used over that of the angle budget: falls as w rises. */
@@ -250,25 +257,33 @@ static double imbalance(const sl_opt_state *state)
            log(fmax(total.angle - 1.0, least) / fmax(state->def->target_angle - 1.0, least));
 }
 
-/* Regula falsi with bisection where it stalls; a piece that is flat anyway has nothing to balance. */
+/* Bisection, in growing steps until there is a bound on each side. A weight with which a chart has no embedding is such
+ * a bound: taking the other charts alone with it, the weight would run away from the maps. A piece that is flat anyway
+ * has nothing to balance. */
 sl_status sl_opt_balance(sl_opt_state *state)
 {
     sl_status status = SL_OK;
-    double low = W_LOW, high = W_HIGH, step = 0.25;
+    double low = -HUGE_VAL, high = HUGE_VAL, step = 0.25;
     for (int k = 0; k < BALANCE_ROUNDS; k++) {
-        const double f = imbalance(state);
-        if (fabs(f) < BALANCED || (f > 0.0 && state->w >= W_HIGH) || (f < 0.0 && state->w <= W_LOW)) {
+        const double f = imbalance(state), before = state->w;
+        bool all;
+        if (fabs(f) < BALANCED || (f > 0.0 && before >= W_HIGH) || (f < 0.0 && before <= W_LOW)) {
             break;
         }
         if (f > 0.0) { /* too much stretch */
-            low = state->w;
-            state->w = high < W_HIGH ? 0.5 * (low + high) : fmin(W_HIGH, state->w + step);
+            low = before;
+            state->w = high < HUGE_VAL ? 0.5 * (low + high) : fmin(W_HIGH, before + step);
         } else {
-            high = state->w;
-            state->w = low > W_LOW ? 0.5 * (low + high) : fmax(W_LOW, state->w - step);
+            high = before;
+            state->w = low > -HUGE_VAL ? 0.5 * (low + high) : fmax(W_LOW, before - step);
         }
         step *= 2.0;
-        SL_TRY(sl_opt_resolve(state));
+        SL_TRY(resolve(state, SL_OPT_WARM, true, &all));
+        if (!all) {
+            low = f > 0.0 ? low : state->w;
+            high = f > 0.0 ? state->w : high;
+            state->w = before;
+        }
     }
 cleanup:
     return status;

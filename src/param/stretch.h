@@ -45,6 +45,9 @@ typedef struct sl_stretch_def {
      * energy may rise on their way. Borrowed while the solver lives; default none. */
     int32_t pin_count;
     const sl_pin *pin;
+    const double *guess; /* sl_stretch_unfold alone: nv x 2, about where the vertices will come to lie: what flips there
+                          * is mended, and where that can be (and with simple_border no edges cross) it is minimised
+                          * from there, without coarse meshes; borrowed; default NULL */
     sl_stretch_workspace *workspace; /* borrowed while the solver lives; default NULL = everything anew */
 } sl_stretch_def;
 

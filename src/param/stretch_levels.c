@@ -274,6 +274,25 @@ static sl_status finish(const descent *d, sl_stretch_info *info)
     return status;
 }
 
+static bool is_no_map(sl_status status)
+{
+    return status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_INFEASIBLE;
+}
+
+/* Minimises from the caller's guess; *solved = false where that is no start. */
+static sl_status try_guess(descent *d, sl_stretch_info *info, bool *solved)
+{
+    memcpy(d->uv, d->def->guess, 2 * (size_t)d->patch->nv * sizeof *d->uv);
+    sl_status status = sl_stretch_mend(d->patch, d->def->simple_border, d->uv, solved);
+    if (status != SL_OK || !*solved) {
+        return is_no_map(status) ? SL_OK : status;
+    }
+    settle(d->patch, d->def->w, d->uv);
+    status = finish(d, info);
+    *solved = status == SL_OK && info->energy_after <= FAR_ENERGY;
+    return is_no_map(status) ? SL_OK : status;
+}
+
 /* The whole from its own Tutte embedding, into uv. */
 static sl_status start_over(descent *d, double *uv, sl_stretch_info *info)
 {
@@ -285,11 +304,6 @@ static sl_status start_over(descent *d, double *uv, sl_stretch_info *info)
     d->uv = levels_uv;
     info->levels = 0;
     return status;
-}
-
-static bool is_no_map(sl_status status)
-{
-    return status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_INFEASIBLE;
 }
 
 /* Through the levels, and where these give no map, or one whose border is caught in itself far from any minimum,
@@ -334,17 +348,24 @@ sl_status sl_stretch_unfold(const sl_patch *patch, const sl_stretch_def *def, co
     free_def.line_count = 0;
     const double *best;
     double *other = NULL;
+    bool guessed = false;
     if (!sl_patch_is_disk(patch)) {
         return SL_INFEASIBLE;
     }
-    SL_TRY(sl_levels_create(patch, LEVEL_SHARE, least_of(patch->nt), &d.levels));
     d.uv = sl_alloc(patch->nv, 2 * sizeof *d.uv);
     d.next = sl_alloc(patch->nv, sizeof *d.next);
     other = sl_alloc(patch->nv, 2 * sizeof *other);
     if (d.uv == NULL || d.next == NULL || other == NULL) {
         SL_TRY(SL_OUT_OF_MEMORY);
     }
-    SL_TRY(unfold(&d, other, &best, &result));
+    best = d.uv;
+    if (def->guess != NULL) {
+        SL_TRY(try_guess(&d, &result, &guessed));
+    }
+    if (!guessed) {
+        SL_TRY(sl_levels_create(patch, LEVEL_SHARE, least_of(patch->nt), &d.levels));
+        SL_TRY(unfold(&d, other, &best, &result));
+    }
     memcpy(uv, best, 2 * (size_t)patch->nv * sizeof *uv);
     if (info != NULL) {
         *info = result;

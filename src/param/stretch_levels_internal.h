@@ -59,4 +59,9 @@ bool sl_stretch_insert(const double *xyz, const sl_removal *removal, const int32
 bool sl_stretch_settle(const double *xyz, const sl_removal *star_at, const int32_t *ring, double w, double limit,
                        double *uv);
 
+/* Moves the vertices of flipped triangles, and more around them each time, to the mean of their neighbours until none
+ * is flipped; with `simple`, border edges that cross are pulled inwards, too. *mended = false where that does not come
+ * to an end soon. SL_BAD_INPUT (not finite), SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_stretch_mend(const sl_patch *patch, bool simple, double *uv, bool *mended);
+
 #endif

@@ -1,0 +1,189 @@
+/* Large pieces: the search runs on a coarse mesh, its charts are tried on a finer one, and the piece itself is solved
+ * once they are what it wants. */
+#include "optimize/decimate_internal.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+
+static const int32_t SEARCHED = 4000;                       /* triangles of the mesh that is searched, */
+static const int32_t TRIED = 24000;                         /* of the one on which its charts are tried, */
+static const int32_t SEARCH_FROM = 30000, TRY_FROM = 48000; /* and of pieces that have them */
+static const int CARRIES = 3;                               /* of the searched mesh's seams */
+static const int FINISHES = 2;                              /* of the tried mesh's */
+static const double ENOUGH = 0.93;                          /* share of the budget that is well spent */
+static const double MOST_RATIO = 2.0; /* between the losses of one mesh and the next finer, as far as it is believed */
+
+/* A coarse mesh. */
+typedef struct level {
+    sl_mesh *mesh;
+    sl_triangulation *triangulation;
+    int32_t *vertex; /* of the next finer surface's patch */
+    double *weight;
+    sl_opt_surface surface;
+    sl_optimize_def def; /* targets as these charts must meet them for the finer ones to do so */
+    sl_opt_state state;
+} level;
+
+static void level_clear(level *l)
+{
+    sl_opt_state_clear(&l->state);
+    sl_opt_surface_clear(&l->surface);
+    sl_triangulation_free(l->triangulation);
+    sl_mesh_free(l->mesh);
+    sl_free(l->vertex);
+    sl_free(l->weight);
+}
+
+static sl_status level_init(const sl_opt_state *finer, int32_t triangles, level *l)
+{
+    sl_status status = SL_OK;
+    l->def = *finer->def;
+    SL_TRY(sl_report_progress(finer->context, "coarsen", 0.0));
+    SL_TRY(sl_opt_decimate(finer->surface->patch, triangles, &l->mesh, &l->vertex));
+    l->weight = sl_alloc(l->mesh->nh, sizeof *l->weight);
+    SL_TRY(l->weight == NULL ? SL_OUT_OF_MEMORY : SL_OK);
+    SL_TRY(sl_opt_coarse_weights(finer->surface, l->mesh, l->vertex, l->weight));
+    SL_TRY(sl_triangulation_create(l->mesh, &l->triangulation));
+    SL_TRY(sl_opt_surface_init(l->mesh, l->triangulation, l->weight, &l->surface));
+    SL_TRY(sl_opt_state_init(&l->surface, &l->def, finer->context, &l->state));
+cleanup:
+    return status;
+}
+
+/* The larger share of the two budgets that is spent; above 1 where a chart stretches too much. */
+static double share_of(const sl_opt_state *state)
+{
+    const sl_optimize_def *def = state->def;
+    sl_opt_total total;
+    sl_opt_totals(state, &total);
+    const double share = fmax((total.stretch - 1.0) / fmax(def->target_stretch - 1.0, 1e-9),
+                              (total.angle - 1.0) / fmax(def->target_angle - 1.0, 1e-9));
+    return share <= 1.0 && !sl_opt_within(state, &total) ? 1.0 + 0x1p-20 : share;
+}
+
+/* The targets of a level from what came of its charts on the next: the same share of the budget is left there as
+ * here. */
+static void correct_targets(const sl_opt_state *fine, level *l)
+{
+    sl_opt_total there, here;
+    sl_opt_totals(fine, &here);
+    sl_opt_totals(&l->state, &there);
+    const double stretch = fmax(here.stretch - 1.0, 1e-6) / fmax(there.stretch - 1.0, 1e-6);
+    const double angle = fmax(here.angle - 1.0, 1e-6) / fmax(there.angle - 1.0, 1e-6);
+    l->def.target_stretch = 1.0 + (fine->def->target_stretch - 1.0) / fmin(fmax(stretch, 1.0 / MOST_RATIO), MOST_RATIO);
+    l->def.target_angle = 1.0 + (fine->def->target_angle - 1.0) / fmin(fmax(angle, 1.0 / MOST_RATIO), MOST_RATIO);
+}
+
+static sl_status carry(const level *from, sl_opt_state *to, bool *carried)
+{
+    sl_status status = SL_OK;
+    SL_TRY(sl_report_progress(to->context, "carry", 0.0));
+    sl_opt_uncut(to);
+    SL_TRY(sl_opt_carry(&from->state, from->vertex, to, carried));
+cleanup:
+    return status;
+}
+
+/* Where borders that touch have held a map back until no weight and no cut helped it, its charts are laid flat anew. */
+static sl_status search_again(level *l)
+{
+    sl_status status = SL_OK;
+    bool all;
+    SL_TRY(sl_opt_search(&l->state));
+    if (share_of(&l->state) > 1.0) {
+        l->state.w = 0.0;
+        SL_TRY(sl_opt_unfold(&l->state, false, &all));
+        SL_TRY(sl_opt_search(&l->state));
+    }
+cleanup:
+    return status;
+}
+
+/* Searches the coarse mesh, carries the seams over, and corrects its targets until the finer one's are met and not
+ * much is left of them; what is still missing is cut there. *done = false: the seams could not be carried over. */
+static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
+{
+    sl_status status = SL_OK;
+    double share = HUGE_VAL;
+    for (int k = 0; k < CARRIES; k++) {
+        SL_TRY(search_again(l));
+        SL_TRY(carry(l, finer, done));
+        if (!*done) {
+            goto cleanup;
+        }
+        share = share_of(finer);
+        if (share <= 1.0 && share >= ENOUGH) {
+            break;
+        }
+        correct_targets(finer, l);
+    }
+    finer->info = l->state.info;
+    if (share > 1.0) {
+        SL_TRY(sl_opt_cut(finer));
+    }
+cleanup:
+    return status;
+}
+
+/* The tried mesh's seams on the piece; where that misses the targets, once more with what the difference teaches. */
+static sl_status finish(level *tried, sl_opt_state *fine, bool *done)
+{
+    sl_status status = SL_OK;
+    for (int k = 0; k < FINISHES; k++) {
+        if (k > 0) {
+            correct_targets(fine, tried);
+            SL_TRY(sl_opt_cut(&tried->state));
+        }
+        SL_TRY(carry(tried, fine, done));
+        if (!*done || share_of(fine) <= 1.0) {
+            break;
+        }
+    }
+    fine->info = tried->state.info;
+cleanup:
+    return status;
+}
+
+static sl_status through_levels(sl_opt_state *state, const sl_segment_def *segment, bool *done)
+{
+    sl_status status = SL_OK;
+    level tried = {0}, searched = {0};
+    sl_segment_def with = *segment;
+    const bool two = state->surface->patch->nt > TRY_FROM;
+    if (two) {
+        SL_TRY(level_init(state, TRIED, &tried));
+    }
+    sl_opt_state *finer = two ? &tried.state : state;
+    SL_TRY(level_init(finer, SEARCHED, &searched));
+    with.edge_weight = searched.weight;
+    SL_TRY(sl_opt_start(&searched.state, &with, searched.triangulation, done));
+    if (*done) {
+        SL_TRY(search_level(&searched, finer, done));
+    }
+    if (*done && two) {
+        SL_TRY(finish(&tried, state, done));
+    }
+cleanup:
+    level_clear(&searched);
+    level_clear(&tried);
+    return status;
+}
+
+sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment, const sl_triangulation *triangulation,
+                       bool *done)
+{
+    sl_status status = SL_OK;
+    *done = false;
+    if (state->surface->patch->nt > SEARCH_FROM) {
+        SL_TRY(through_levels(state, segment, done));
+    }
+    if (!*done) {
+        SL_TRY(sl_opt_start(state, segment, triangulation, done));
+        if (*done) {
+            SL_TRY(sl_opt_search(state));
+        }
+    }
+cleanup:
+    return status;
+}
