@@ -7,9 +7,10 @@
 #include <string.h>
 
 static const int32_t PROBE_STEPS = 4;
-static const double LEAST_GAIN = 1e-3; /* of a whole budget: below it nothing is gained */
-static const double CUT_PRICE =
-    0.1; /* of any cut, in seam length over sqrt(area): else seams are made an edge at a time */
+static const double LEAST_GAIN = 4e-3; /* of a whole budget: below it nothing is gained */
+/* Of any cut, in seam length over sqrt(area): else seams are made an edge at a time. The first at these targets and
+ * coarser ones, down to the last at finer ones, which short cuts reach best. */
+static const double CUT_PRICE = 0.1, COARSE_STRETCH = 1.05, COARSE_ANGLE = 1.2, LEAST_CUT_PRICE = 0.02;
 static const int BALANCE_EVERY = 3; /* cuts */
 
 /* The candidates of all charts, those of a chart until it changes. */
@@ -142,6 +143,13 @@ static double need(const sl_opt_state *state)
     return loss > spare ? loss - spare : HUGE_VAL;
 }
 
+static double cut_price(const sl_optimize_def *def)
+{
+    const double fineness =
+        fmin((def->target_stretch - 1.0) / (COARSE_STRETCH - 1.0), (def->target_angle - 1.0) / (COARSE_ANGLE - 1.0));
+    return fmax(CUT_PRICE * fmin(fineness, 1.0), LEAST_CUT_PRICE);
+}
+
 static double score(const sl_opt_state *state, const sl_opt_trial *trial, double wanted)
 {
     const double gain = sl_opt_loss(state, &state->chart[trial->old[0]].sums) - trial->loss;
@@ -149,7 +157,7 @@ static double score(const sl_opt_state *state, const sl_opt_trial *trial, double
     if (!trial->valid || !(gain > LEAST_GAIN)) {
         return 0.0;
     }
-    return fmin(gain, wanted) / (CUT_PRICE + price);
+    return fmin(gain, wanted) / (cut_price(state->def) + price);
 }
 
 /* Are the atlas's targets met, and only some charts beyond what one may be? */

@@ -145,9 +145,10 @@ typedef enum sl_opt_effort {
     SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */
 } sl_opt_effort;
 
-/* Solves a chart. uv: in and out; a map at hand must be flip-free. *embedded = proven. */
-SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
-                                    bool *embedded);
+/* Solves a chart. uv: in and out; a map at hand must be flip-free. origin: an embedded map but for banks that touch,
+ * from which a solve that keeps the border simple may start; NULL: that is uv. *embedded = proven. */
+SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort,
+                                    const double *origin, double *uv, bool *embedded);
 
 /* sl_certify_embedding of a chart. */
 SL_NODISCARD sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out);

@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double SETTLED = 1e-4;       /* relative decrease at which a chart is solved */
-static const double OPEN_SHARE = 0x1p-10; /* of a border edge: room made between the banks of a fresh cut */
-static const double W_LOW = -30.0, W_HIGH = 1.0;
+static const double SETTLED = 1e-4;             /* relative decrease at which a chart is solved */
+static const double OPEN_SHARE = 0x1p-10;       /* of a border edge: room made between the banks of a fresh cut */
+static const double W_LOW = -5.0, W_HIGH = 1.0; /* lower ones hardly gain angle, and what cuts promise there is noise */
 static const int BALANCE_ROUNDS = 6;
 static const double BALANCED = 0.02; /* the two shares of the budgets agree within this ratio */
 
@@ -67,48 +67,77 @@ static sl_status certify(const attempt *a, const double *uv, bool *embedded)
     return status == SL_BAD_INPUT ? SL_OK : status;
 }
 
-/* From the map in start; where that ends in an overlap, once more with the border kept simple all the way. */
-static sl_status solve_warm(attempt *a, double *uv, bool *embedded)
+static sl_status solve_from_nothing(attempt *a, bool simple_border, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
-    const size_t size = 2 * (size_t)a->patch->nv * sizeof *uv;
     bool solved = false;
     *embedded = false;
-    memcpy(a->start, uv, size);
+    a->def.simple_border = simple_border;
+    SL_TRY(outcome(sl_stretch_unfold(a->patch, &a->def, a->context, uv, NULL), &solved));
+    if (solved) {
+        SL_TRY(certify(a, uv, embedded));
+    }
+cleanup:
+    a->def.simple_border = false;
+    return status;
+}
+
+/* From the map in start, its touching banks opened, with the border kept simple all the way. */
+static sl_status solve_opened(attempt *a, double *uv, bool *embedded)
+{
+    sl_status status = SL_OK;
+    bool solved = false;
+    sl_open_border(a->patch, a->nb, a->border, a->start, OPEN_SHARE, 0.0, a->work, uv);
+    SL_TRY(certify(a, uv, embedded));
+    if (*embedded) {
+        a->def.simple_border = true;
+        SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
+        SL_TRY(certify(a, uv, embedded));
+    }
+cleanup:
+    a->def.simple_border = false;
+    return status;
+}
+
+/* From the map at hand. Where that ends in an overlap: with `anew` from nothing, since that may come to lie otherwise;
+ * only then with a border that must stay simple, which is held by where it touches. */
+static sl_status solve_warm(attempt *a, bool anew, double *uv, bool *embedded)
+{
+    sl_status status = SL_OK;
+    bool solved = false;
+    *embedded = false;
     SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
     if (solved) {
         SL_TRY(certify(a, uv, embedded));
     }
-    if (!solved || *embedded) {
-        goto cleanup;
+    if (!*embedded && anew) {
+        SL_TRY(solve_from_nothing(a, false, uv, embedded));
     }
-    sl_open_border(a->patch, a->nb, a->border, a->start, OPEN_SHARE, 0.0, a->work, uv);
-    SL_TRY(certify(a, uv, &solved));
-    if (solved) {
-        a->def.simple_border = true;
-        SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
-        a->def.simple_border = false;
-        SL_TRY(certify(a, uv, embedded));
+    if (!*embedded && solved) {
+        SL_TRY(solve_opened(a, uv, embedded));
+    }
+    if (!*embedded && anew) {
+        SL_TRY(solve_from_nothing(a, true, uv, embedded));
     }
 cleanup:
     return status;
 }
 
-static sl_status solve_cold(attempt *a, int attempts, double *uv, bool *embedded)
+/* From the map at hand alone; from nothing where that has flips. */
+static sl_status solve_sewn(attempt *a, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
-    *embedded = false;
-    for (int k = 0; k < attempts && !*embedded; k++) {
-        bool solved = false;
-        a->def.simple_border = k == 1;
-        SL_TRY(outcome(sl_stretch_unfold(a->patch, &a->def, a->context, uv, NULL), &solved));
-        if (!solved) {
-            break;
-        }
-        SL_TRY(certify(a, uv, embedded));
-    }
+    bool solved = false;
+    SL_TRY(outcome(sl_stretch_minimise(a->patch, &a->def, a->context, uv, NULL), &solved));
+    SL_TRY(solved ? certify(a, uv, embedded) : solve_from_nothing(a, false, uv, embedded));
 cleanup:
     return status;
+}
+
+static sl_status solve_cold(attempt *a, double *uv, bool *embedded)
+{
+    const sl_status status = solve_from_nothing(a, false, uv, embedded);
+    return status != SL_OK || *embedded ? status : solve_from_nothing(a, true, uv, embedded);
 }
 
 sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out)
@@ -122,8 +151,8 @@ sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate
     return status;
 }
 
-sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
-                       bool *embedded)
+sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, const double *origin,
+                       double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
     attempt a = {.patch = patch, .def = stretch_def(state)};
@@ -135,21 +164,24 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_
     a.work = sl_alloc(patch->nv, sizeof *a.work);
     SL_TRY(a.start == NULL || a.work == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     SL_TRY(list_border(patch, &a.nb, &a.border));
-    bool solved = false;
-    if (effort == SL_OPT_SEWN) {
-        SL_TRY(outcome(sl_stretch_minimise(a.patch, &a.def, a.context, uv, NULL), &solved));
-    }
-    if (solved) {
-        SL_TRY(certify(&a, uv, embedded));
-    } else if (effort == SL_OPT_WARM || effort == SL_OPT_WARM_ONLY) {
-        SL_TRY(solve_warm(&a, uv, embedded));
-    }
-    if (effort == SL_OPT_GUESSED) {
-        memcpy(a.start, uv, 2 * (size_t)patch->nv * sizeof *uv);
+    memcpy(a.start, origin != NULL ? origin : uv, 2 * (size_t)patch->nv * sizeof *uv);
+    switch (effort) {
+    case SL_OPT_WARM:
+        SL_TRY(solve_warm(&a, true, uv, embedded));
+        break;
+    case SL_OPT_WARM_ONLY:
+        SL_TRY(solve_warm(&a, false, uv, embedded));
+        break;
+    case SL_OPT_GUESSED:
         a.def.guess = a.start;
-    }
-    if (!solved && !*embedded && effort != SL_OPT_WARM_ONLY) {
-        SL_TRY(solve_cold(&a, effort == SL_OPT_SEWN ? 1 : 2, uv, embedded));
+        SL_TRY(solve_cold(&a, uv, embedded));
+        break;
+    case SL_OPT_COLD:
+        SL_TRY(solve_cold(&a, uv, embedded));
+        break;
+    case SL_OPT_SEWN:
+        SL_TRY(solve_sewn(&a, uv, embedded));
+        break;
     }
 cleanup:
     sl_free(a.start);
@@ -175,8 +207,9 @@ static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t c = begin; c < end; c++) {
         const sl_opt_chart *chart = &r->state->chart[c];
         r->uv[c] = sl_copy(chart->uv, 2 * (int64_t)chart->patch->nv, sizeof **r->uv);
-        r->status[c] = r->uv[c] == NULL ? SL_OUT_OF_MEMORY
-                                        : sl_opt_solve(r->state, chart->patch, r->effort, r->uv[c], &r->embedded[c]);
+        r->status[c] = r->uv[c] == NULL
+                           ? SL_OUT_OF_MEMORY
+                           : sl_opt_solve(r->state, chart->patch, r->effort, NULL, r->uv[c], &r->embedded[c]);
         if (r->status[c] == SL_OK && r->embedded[c]) {
             sl_opt_measure(r->state->surface, chart->patch, r->uv[c], &r->sums[c], NULL);
         }
