@@ -210,6 +210,18 @@ SL_NODISCARD sl_status sl_opt_search(sl_opt_state *state);
 SL_NODISCARD sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment,
                                     const sl_triangulation *triangulation, bool *done);
 
+/* What seams and charts cost. */
+double sl_opt_price(const sl_opt_state *state);
+
+/* Where weights count and creases part the surface into few, nearly developable parts, searches once more from those,
+ * and puts the outcome in the state's place if it costs less. */
+SL_NODISCARD sl_status sl_opt_search_creases(sl_opt_state *state, const sl_segment_def *segment,
+                                             const sl_triangulation *triangulation);
+
+/* The charts of a segmentation of the surface's mesh, `mesh` with its seams cut, laid flat. state: fresh. *started =
+ * false where one is no disk or has no map. */
+SL_NODISCARD sl_status sl_opt_take(sl_opt_state *state, const sl_mesh *mesh, const sl_segmentation *seg, bool *started);
+
 /* The first charts: spectral cuts of the surface's mesh, recursing where one fails or exceeds def->start_stretch.
  * *started = false where none was found. */
 SL_NODISCARD sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment,

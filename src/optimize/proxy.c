@@ -182,6 +182,7 @@ sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment, const
         SL_TRY(sl_opt_start(state, segment, triangulation, done));
         if (*done) {
             SL_TRY(sl_opt_search(state));
+            SL_TRY(sl_opt_search_creases(state, segment, triangulation));
         }
     }
 cleanup:

@@ -51,7 +51,7 @@ static void write_back(const sl_opt_state *state, sl_mesh *mesh, double *corner_
     }
 }
 
-static double price(const sl_opt_state *state)
+double sl_opt_price(const sl_opt_state *state)
 {
     double sum = 0.0;
     const sl_patch *p = state->surface->patch;
@@ -74,7 +74,7 @@ sl_status sl_opt_search(sl_opt_state *state)
         }
         SL_TRY(sl_opt_sew(state));
         SL_TRY(sl_opt_straighten(state));
-        const double now = price(state);
+        const double now = sl_opt_price(state);
         if (!(now < best)) {
             break;
         }

@@ -93,6 +93,17 @@ cleanup:
     return status;
 }
 
+sl_status sl_opt_take(sl_opt_state *state, const sl_mesh *mesh, const sl_segmentation *seg, bool *started)
+{
+    sl_status status = SL_OK;
+    *started = true;
+    take_seams(state, mesh, seg);
+    SL_TRY(take_charts(state, seg, started));
+    SL_TRY(solve_charts(state, seg, started));
+cleanup:
+    return status;
+}
+
 sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment, const sl_triangulation *triangulation,
                        bool *started)
 {
@@ -103,9 +114,7 @@ sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment, const
     *started = true;
     SL_TRY(sl_mesh_copy(state->surface->mesh, &mesh));
     SL_TRY(sl_segment(mesh, triangulation, &def, state->context, &seg));
-    take_seams(state, mesh, seg);
-    SL_TRY(take_charts(state, seg, started));
-    SL_TRY(solve_charts(state, seg, started));
+    SL_TRY(sl_opt_take(state, mesh, seg, started));
 cleanup:
     sl_mesh_free(mesh);
     sl_segmentation_free(seg);

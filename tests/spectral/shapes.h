@@ -122,6 +122,67 @@ static inline sl_mesh *test_tube_mesh(test_rng *rng, int32_t around, int32_t alo
     return test_grid_mesh(&g, rng, NULL);
 }
 
+/* A closed box of half extents a, jittered lines of vertices on each edge direction, n[k] cells along axis k. The side
+ * of a facet is face_side[f] = 2 k + (positive). */
+static inline sl_mesh *test_box_mesh(test_rng *rng, const double a[3], const int32_t n[3], test_facets facets,
+                                     int32_t *face_side)
+{
+    enum { MOST = 16 };
+    double line[3][MOST + 1], *xyz = malloc(3 * 6 * (MOST + 1) * (MOST + 1) * sizeof *xyz);
+    int32_t name[MOST + 1][MOST + 1][MOST + 1], nv = 0, nf = 0, corners = 0;
+    int32_t *first = malloc((12 * MOST * MOST + 1) * sizeof *first), *index = malloc(36 * MOST * MOST * sizeof *index);
+    for (int k = 0; k < 3; k++) {
+        for (int32_t i = 0; i <= n[k]; i++) {
+            const double jitter = i > 0 && i < n[k] ? test_uniform(rng, -0.3, 0.3) : 0.0;
+            line[k][i] = a[k] * (2.0 * (i + jitter) / n[k] - 1.0);
+        }
+    }
+    memset(name, -1, sizeof name);
+    first[0] = 0;
+    for (int32_t side = 0; side < 6; side++) {
+        const int k = side / 2, u = (k + 1) % 3, v = (k + 2) % 3;
+        for (int32_t cell = 0; cell < n[u] * n[v]; cell++) {
+            int32_t quad[4];
+            for (int c = 0; c < 4; c++) {
+                int32_t at[3];
+                const int corner = side % 2 == 1 ? c : 3 - c;
+                at[k] = side % 2 == 1 ? n[k] : 0;
+                at[u] = cell / n[v] + (corner == 1 || corner == 2);
+                at[v] = cell % n[v] + (corner >= 2);
+                int32_t *q = &name[at[0]][at[1]][at[2]];
+                if (*q < 0) {
+                    *q = nv++;
+                    for (int d = 0; d < 3; d++) {
+                        xyz[3 * *q + d] = line[d][at[d]];
+                    }
+                }
+                quad[c] = *q;
+            }
+            const bool split = facets == TEST_TRIANGLES || (facets == TEST_MIXED && test_index(rng, 2) == 0);
+            const int32_t turn = test_index(rng, 2);
+            for (int32_t c = 0; c < 4; c++) {
+                index[corners++] = quad[(c + turn) % 4];
+                if (split && c == 2) {
+                    face_side[nf] = side;
+                    first[++nf] = corners;
+                    index[corners++] = quad[turn];
+                    index[corners++] = quad[2 + turn];
+                }
+            }
+            face_side[nf] = side;
+            first[++nf] = corners;
+        }
+    }
+    sl_polygons polygons = {nv, nf, xyz, first, index};
+    sl_mesh *mesh = NULL;
+    sl_diag diag = sl_diag_none();
+    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
+    free(xyz);
+    free(first);
+    free(index);
+    return mesh;
+}
+
 /* A closed body: six bent grids of a cube blown up to radius(direction), spikes[3 k ..] directions of bumps of given
  * height. */
 static inline sl_mesh *test_spiky_mesh(test_rng *rng, int32_t n, int32_t nspike, double height, test_facets facets)
