@@ -5,7 +5,7 @@ set border 1 lw 0.8 lc rgb '#555a60'
 set tics nomirror out textcolor rgb '#333840'
 set output 'ablations.svg'
 set logscale x 2
-set xrange [0.45:16]
+set xrange [0.45:*]
 set yrange [16.8:0.2]
 set lmargin 44
 set xlabel 'over the defaults'

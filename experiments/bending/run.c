@@ -151,7 +151,7 @@ static sl_status bend_model_all(exp_run *run, exp_page *page, int m, results *r)
     sl_status status = SL_OK;
     bend_model model = {0};
     const double step = run->quick ? 90.0 : 30.0;
-    exp_page_html(page, "<h3>%s</h3>\n<div class=\"grid cuts\">\n", models[m].title);
+    exp_page_html(page, "<h3>%s</h3>\n<div class=\"grid thirds\">\n", models[m].title);
     SL_TRY(m == 0 ? lens_make(&model) : bend_load(run, models[m].name, &model));
     for (int32_t a = 0; a < r->angles; a++) {
         const bool shown = a == 0 || fabs(step * a - 270.0) < 1.0;

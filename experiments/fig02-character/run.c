@@ -23,7 +23,7 @@ enum part { FACE, HAIR, PIGTAILS, HANDS, ARMS, TORSO, SKIRT, LEGS };
 static enum part part_at(const double p[3])
 {
     const double x = fabs(p[0]), from_leg = hypot(x - 0.54, p[2]);
-    if ((p[1] > 7.3 && x > 1.2) || (p[1] > 6.85 && x > 1.45)) {
+    if ((p[1] > 7.3 && x > 1.2) || (p[1] > 6.85 && x > 1.45 && p[2] < -0.2)) {
         return PIGTAILS;
     }
     if (p[1] > 7.75) {

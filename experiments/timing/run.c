@@ -187,7 +187,7 @@ static int by_model(const void *a, const void *b)
 /* Sizes in ascending order over all models, so that the peak of the process is that of the run that just ended. */
 static sl_status time_all(exp_run *run, row *r, int32_t *count)
 {
-    const int32_t most = run->quick ? 30000 : 1200000;
+    const int32_t most = run->quick ? 30000 : 1600000;
     bool larger[SL_COUNTOF(models)] = {false};
     for (int32_t scale = 1; scale <= MOST_SIZES; scale++) {
         for (size_t m = 0; m < SL_COUNTOF(models); m++) {
