@@ -89,7 +89,7 @@ static void show_row(exp_page *page, const peer *p)
     exp_page_cell(page, "%.4f", p->l2);
     exp_page_cell(page, "%.3f", p->angle);
     exp_page_cell(page, "%.3f", p->fill);
-    exp_page_cell(page, "%.2f", p->seconds);
+    exp_page_time(page, "%.2f", p->seconds);
     exp_page_row_end(page);
 }
 
