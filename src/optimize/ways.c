@@ -47,6 +47,7 @@ sl_status sl_opt_ways_init(const sl_opt_state *state, sl_opt_ways *w)
                        .parent = sl_alloc(nh, sizeof *w->parent),
                        .settled = sl_calloc(nh, sizeof *w->settled),
                        .touched = sl_alloc(nh, sizeof *w->touched),
+                       .turn = s->weight != NULL ? TURN : 0.0,
                        .least = HUGE_VAL};
     if (w->taken == NULL || w->angle == NULL || w->distance == NULL || w->parent == NULL || w->settled == NULL ||
         w->touched == NULL) {
@@ -107,7 +108,7 @@ static double turn_cost(const sl_opt_ways *w, int32_t h, double beside, double a
 {
     const double *cost = w->state->surface->cost;
     const double turn = around > 0.0 ? acos(-1.0) * (2.0 * beside / around - 1.0) : 0.0;
-    return TURN * fmin(cost[h], cost[g]) * (1.0 - cos(turn));
+    return w->turn * fmin(cost[h], cost[g]) * (1.0 - cos(turn));
 }
 
 /* The angle around the vertex where h ends, which must lie inside the surface. */

@@ -10,6 +10,7 @@ typedef struct sl_opt_ways {
     const sl_opt_state *state; /* borrowed */
     uint8_t *taken;            /* nv: vertices that no way may pass: those of seams and of the border, at first */
     double *angle;             /* 3 nt: of the corners */
+    double turn;               /* price of a right angle; 0 where length alone counts */
     double least;              /* cost over length of the cheapest edge */
     double *distance;          /* 3 nt: up to the end of a halfedge */
     int32_t *parent;           /* 3 nt */

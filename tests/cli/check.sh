@@ -155,6 +155,15 @@ contains best.atlas.json '"passed":true'
 contains best.atlas.json '"failed":0'
 contains best.atlas.json '"missed":0'
 contains best.atlas.json '"target_stretch":1.04'
+expect 0 "$seamlab" unwrap $mesh -o length.obj --preset best --weights off --weight-crease 0.9
+contains length.atlas.json '"weights":{"crease":0'
+contains best.atlas.json '"weights":{"crease":0.6'
+for part in crease concave hidden loops; do
+    expect 2 "$seamlab" unwrap $mesh -o bad.obj --preset best --weight-$part 1.5
+done
+expect 2 "$seamlab" unwrap $mesh -o bad.obj --preset best --weights some
+expect 0 "$seamlab" unwrap $mesh -o paper2.obj --preset paper --weights off
+cmp -s paper.obj paper2.obj || complain "weights change the preset paper"
 expect 0 "$seamlab" segment $mesh --preset best --protect first --json
 contains out.txt '"invalid":0'
 expect 0 "$seamlab" front $mesh --targets 1.3,1.1 -o front.svg --json

@@ -205,6 +205,43 @@ static void paths_branch_where_that_is_shorter(void **state)
     assert_true(shorter > 0);
 }
 
+static double weighted_length(const sl_mesh *m, const double *weight, const sl_cut_list *list)
+{
+    double sum = 0.0;
+    for (int32_t k = 0; k < list->count; k++) {
+        sum += weight[list->halfedge[k]] * sl_mesh_edge_length(m, list->halfedge[k]);
+    }
+    return sum;
+}
+
+static void weights_draw_the_path_to_cheaper_edges(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3e16);
+    int32_t cheaper = 0;
+    for (int trial = 0; trial < 10 * test_multiplier(); trial++) {
+        sl_mesh *m = test_tube_mesh(&rng, 12, 18, 4.0, TEST_MIXED);
+        double *weight = malloc((size_t)m->nh * sizeof *weight);
+        for (int32_t h = 0; h < m->nh; h++) {
+            weight[h] = m->twin[h] >= 0 && m->twin[h] < h ? weight[m->twin[h]] : test_uniform(&rng, 0.1, 1.0);
+        }
+        sl_cut_list plain, weighed;
+        assert_int_equal(sl_join_loops(m, NULL, &plain), SL_OK);
+        const double length = list_length(m, &plain);
+        sl_sew_list(m, &plain);
+        assert_int_equal(sl_join_loops(m, weight, &weighed), SL_OK);
+        assert_true(list_length(m, &weighed) >= length * (1.0 - 1e-12));
+        const double was = weighted_length(m, weight, &plain), now = weighted_length(m, weight, &weighed);
+        assert_true(now <= was * (1.0 + 1e-12));
+        cheaper += now < was * (1.0 - 1e-9);
+        sl_cut_list_clear(&plain);
+        sl_cut_list_clear(&weighed);
+        free(weight);
+        sl_mesh_free(m);
+    }
+    assert_true(cheaper > 0);
+}
+
 static void a_disk_and_a_closed_surface_are_left_alone(void **state)
 {
     (void)state;
@@ -226,6 +263,7 @@ int main(void)
         cmocka_unit_test(a_tube_is_cut_along_the_shortest_path_between_its_ends),
         cmocka_unit_test(a_patch_with_holes_becomes_a_disk_and_is_sewn_again),
         cmocka_unit_test(paths_branch_where_that_is_shorter),
+        cmocka_unit_test(weights_draw_the_path_to_cheaper_edges),
         cmocka_unit_test(a_disk_and_a_closed_surface_are_left_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,12 +3,15 @@
 #include "spectral/shapes.h"
 #include "spectral/spectrum.h"
 
-static double cut_length(const sl_mesh *mesh, const sl_facet_graph *g, const uint8_t *side)
+/* weight: nullable. */
+static double cut_length(const sl_mesh *mesh, const sl_facet_graph *g, const double *weight, const uint8_t *side)
 {
     double length = 0.0;
     for (int32_t i = 0; i < g->graph.n; i++) {
         for (int32_t p = g->graph.first[i]; p < g->graph.first[i + 1]; p++) {
-            length += side[i] == 1 && side[g->graph.adj[p]] == 0 ? sl_mesh_edge_length(mesh, g->halfedge[p]) : 0.0;
+            const int32_t h = g->halfedge[p];
+            const double factor = weight != NULL ? weight[h] : 1.0;
+            length += side[i] == 1 && side[g->graph.adj[p]] == 0 ? factor * sl_mesh_edge_length(mesh, h) : 0.0;
         }
     }
     return length;
@@ -72,8 +75,8 @@ static bool random_sides(test_rng *rng, const sl_graph *g, int32_t size, uint8_t
 }
 
 /* Shortest cut over all assignments of the free nodes. */
-static double shortest_by_enumeration(const sl_mesh *mesh, const sl_facet_graph *g, const uint8_t *side,
-                                      const int32_t *free_node, int32_t nfree)
+static double shortest_by_enumeration(const sl_mesh *mesh, const sl_facet_graph *g, const double *weight,
+                                      const uint8_t *side, const int32_t *free_node, int32_t nfree)
 {
     uint8_t trial[64];
     double best = HUGE_VAL;
@@ -82,9 +85,19 @@ static double shortest_by_enumeration(const sl_mesh *mesh, const sl_facet_graph 
         for (int32_t k = 0; k < nfree; k++) {
             trial[free_node[k]] = (uint8_t)(bits >> k & 1);
         }
-        best = fmin(best, cut_length(mesh, g, trial));
+        best = fmin(best, cut_length(mesh, g, weight, trial));
     }
     return best;
+}
+
+/* Random factors, the same for both halfedges of an edge. */
+static double *random_weights(test_rng *rng, const sl_mesh *mesh)
+{
+    double *weight = malloc(sizeof *weight * (size_t)mesh->nh);
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        weight[h] = mesh->twin[h] >= 0 && mesh->twin[h] < h ? weight[mesh->twin[h]] : test_uniform(rng, 0.1, 1.0);
+    }
+    return weight;
 }
 
 static void smoothing_finds_the_shortest_cut_of_the_band(void **state)
@@ -95,6 +108,7 @@ static void smoothing_finds_the_shortest_cut_of_the_band(void **state)
     for (int trial = 0; trial < 150 * test_multiplier(); trial++) {
         sl_mesh *mesh = test_patch_mesh(&rng, 4, 5, TEST_MIXED, NULL);
         sl_facet_graph *g = test_whole_graph(mesh, NULL);
+        double *weight = trial % 2 == 0 ? random_weights(&rng, mesh) : NULL;
         uint8_t side[64], before[64];
         int32_t ring[64], free_node[64], nfree = 0, core[2] = {0};
         if (random_sides(&rng, &g->graph, g->graph.n / 2, side)) {
@@ -107,10 +121,10 @@ static void smoothing_finds_the_shortest_cut_of_the_band(void **state)
             }
             memcpy(before, side, sizeof before);
             bool changed = false;
-            assert_int_equal(sl_smooth_cut(mesh, g, NULL, 1, side, &changed), SL_OK);
+            assert_int_equal(sl_smooth_cut(mesh, g, weight, 1, side, &changed), SL_OK);
             if (core[0] > 0 && core[1] > 0 && nfree <= 13) {
-                const double best = shortest_by_enumeration(mesh, g, before, free_node, nfree);
-                const double now = cut_length(mesh, g, side), was = cut_length(mesh, g, before);
+                const double best = shortest_by_enumeration(mesh, g, weight, before, free_node, nfree);
+                const double now = cut_length(mesh, g, weight, side), was = cut_length(mesh, g, weight, before);
                 compared++;
                 changes += changed;
                 if (changed) { /* where it stayed, the shortest cut may have torn a side */
@@ -120,6 +134,7 @@ static void smoothing_finds_the_shortest_cut_of_the_band(void **state)
                 }
             }
         }
+        free(weight);
         sl_facet_graph_free(g);
         sl_mesh_free(mesh);
     }
@@ -144,7 +159,7 @@ static void smoothing_shortens_keeps_sides_connected_and_stays_in_its_band(void 
             bool changed = false;
             assert_int_equal(sl_smooth_cut(mesh, g, NULL, rings, side, &changed), SL_OK);
             assert_true(sides_connected(&g->graph, side));
-            assert_true(changed ? cut_length(mesh, g, side) < cut_length(mesh, g, before)
+            assert_true(changed ? cut_length(mesh, g, NULL, side) < cut_length(mesh, g, NULL, before)
                                 : memcmp(side, before, (size_t)n) == 0);
             for (int32_t i = 0; i < n; i++) {
                 assert_true(side[i] == before[i] || ring[i] <= rings);
