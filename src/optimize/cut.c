@@ -12,6 +12,10 @@ static const double LEAST_GAIN = 4e-3; /* of a whole budget: below it nothing is
  * coarser ones, down to the last at finer ones, which short cuts reach best. */
 static const double CUT_PRICE = 0.1, COARSE_STRETCH = 1.05, COARSE_ANGLE = 1.2, LEAST_CUT_PRICE = 0.02;
 static const int BALANCE_EVERY = 3; /* cuts */
+static const double LEAST_SHARE =
+    0.01;                         /* of what is missing, or of a budget: a cut that gains less is none to go on by */
+static const double WORSE = 1.01; /* times its loss, at most, that a stuck chart's halves may have */
+static const int32_t MOST_BISECTED = 12; /* stuck charts a search */
 
 /* The candidates of all charts, those of a chart until it changes. */
 typedef struct pool {
@@ -220,10 +224,48 @@ cleanup:
     return status;
 }
 
+/* Of what is missing, the share that the chosen candidate must gain at least. */
+static bool gains_enough(const sl_opt_state *state, const pool *p, int64_t k)
+{
+    const double gain = sl_opt_loss(state, &state->chart[p->trial[k].old[0]].sums) - p->trial[k].loss;
+    return gain >= LEAST_SHARE * fmin(need(state), 1.0);
+}
+
+/* Where one chart makes most of the loss and no candidate of its own gains anything: the bisection of it that loses
+ * least. Its halves have borders of their own, and more room. *taken stays as it is where there is none. */
+static sl_status bisect_stuck(sl_opt_state *state, pool *p, int64_t *taken)
+{
+    sl_status status = SL_OK;
+    int32_t worst = -1;
+    double most = 0.0, sum = 0.0, least = HUGE_VAL;
+    for (int32_t c = 0; c < state->nchart; c++) {
+        const double loss = sl_opt_loss(state, &state->chart[c].sums);
+        sum += loss;
+        worst = loss > most ? c : worst;
+        most = fmax(most, loss);
+    }
+    for (int64_t k = 0; k < p->count && most > 0.5 * sum; k++) {
+        sl_opt_trial *trial = &p->trial[k];
+        if (trial->old[0] != worst || trial->nto < 2 || !trial->valid) {
+            continue;
+        }
+        if (!trial->settled) {
+            SL_TRY(sl_opt_trial_settle(state, trial));
+        }
+        if (trial->settled && trial->loss < fmin(least, WORSE * most)) {
+            least = trial->loss;
+            *taken = k;
+        }
+    }
+cleanup:
+    return status;
+}
+
 sl_status sl_opt_cut(sl_opt_state *state)
 {
     sl_status status = SL_OK;
     pool p = {0};
+    int32_t bisected = 0;
     for (int32_t k = 0; state->info.cuts < state->def->max_cuts; k++) {
         sl_opt_total total;
         int64_t taken;
@@ -238,6 +280,10 @@ sl_status sl_opt_cut(sl_opt_state *state)
         sl_opt_weigh(state);
         SL_TRY(refresh(state, &p));
         SL_TRY(choose(state, &p, &taken));
+        if ((taken < 0 || !gains_enough(state, &p, taken)) && bisected < MOST_BISECTED) {
+            bisected++;
+            SL_TRY(bisect_stuck(state, &p, &taken));
+        }
         if (taken < 0) {
             break;
         }

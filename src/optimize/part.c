@@ -12,6 +12,8 @@
 
 enum { TEXELS = 192, ROUNDS = 16, SAMPLES = 16 };
 
+static const double WORTH = 0.7; /* of a chart's loss, at most, without its border: else it is not parted */
+
 /* Two triangles that share a texel. */
 typedef struct meeting {
     int32_t a, b;
@@ -334,12 +336,16 @@ sl_status sl_opt_part(const sl_opt_state *state, int32_t c, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
     const int64_t edges = 3 * (int64_t)state->chart[c].patch->nt / 2 + 1;
+    const double before = sl_opt_loss(state, &state->chart[c].sums);
     bool again = true;
     *trial = (sl_opt_trial){.old = {c, -1}, .edge = sl_alloc(edges, sizeof *trial->edge)};
     SL_TRY(trial->edge == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     for (int k = 0; k < ROUNDS && again; k++) {
         forget_charts(trial);
         SL_TRY(part_round(state, trial, &again));
+        if (k == 0 && trial->loss > WORTH * before) {
+            break; /* it is not the border that holds this one back */
+        }
     }
     trial->valid = trial->valid && !again && trial->nedge > 0;
 cleanup:
