@@ -99,7 +99,7 @@ cleanup:
 static sl_status add_cut(const sl_patch *p, const chart_graph *g, const uint8_t *side, int32_t c, sl_opt_trial *trial)
 {
     const sl_graph *graph = &g->graph.graph;
-    *trial = (sl_opt_trial){.old = {c, -1}, .edge = sl_alloc(graph->first[graph->n], sizeof *trial->edge)};
+    *trial = (sl_opt_trial){.old = {c, -1}, .nto = 2, .edge = sl_alloc(graph->first[graph->n], sizeof *trial->edge)};
     if (trial->edge == NULL) {
         return SL_OUT_OF_MEMORY;
     }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { PROBES = 4 };               /* on whole charts at a time */
+static const int32_t SMALL = 1000; /* triangles */
 static const int32_t PROBE_STEPS = 4;
 static const double LEAST_GAIN = 4e-3; /* of a whole budget: below it nothing is gained */
 /* Of any cut, in seam length over sqrt(area): else seams are made an edge at a time. The first at these targets and
@@ -89,20 +91,43 @@ cleanup:
 
 typedef struct probing {
     const sl_opt_state *state;
-    sl_opt_trial *trial;
+    sl_opt_trial **trial;
 } probing;
+
+static void guess_range(void *user, int64_t begin, int64_t end, int32_t chunk)
+{
+    (void)chunk;
+    const probing *p = user;
+    for (int64_t k = begin; k < end; k++) {
+        p->trial[k]->status = sl_opt_trial_guess(p->state, p->trial[k]);
+    }
+}
 
 static void probe_range(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
     (void)chunk;
     const probing *p = user;
     for (int64_t k = begin; k < end; k++) {
-        sl_opt_trial *trial = &p->trial[k];
+        sl_opt_trial *trial = p->trial[k];
+        trial->probed = true;
         trial->status = sl_opt_trial_make(p->state, trial);
         if (trial->status == SL_OK) {
             trial->status = sl_opt_trial_probe(p->state, PROBE_STEPS, trial);
         }
     }
+}
+
+/* Runs the trials side by side. */
+static sl_status run_trials(const sl_opt_state *state, sl_opt_trial **list, int64_t count, sl_chunk_fn *range)
+{
+    sl_status status = SL_OK;
+    probing all = {state, list};
+    sl_parallel_for(state->context, count, 1, range, &all);
+    for (int64_t k = 0; k < count; k++) {
+        SL_TRY(list[k]->status);
+    }
+cleanup:
+    return status;
 }
 
 /* Candidates of charts that are gone go; charts that are new get theirs. */
@@ -123,12 +148,23 @@ static sl_status refresh(sl_opt_state *state, pool *p)
             SL_TRY(add_candidates(state, c, p));
         }
     }
-    probing all = {state, p->trial + first};
     state->info.trials += (int32_t)(p->count - first);
-    sl_parallel_for(state->context, p->count - first, 1, probe_range, &all);
+    sl_opt_trial **fresh = sl_alloc(p->count - first, sizeof *fresh);
+    SL_TRY(fresh == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     for (int64_t k = first; k < p->count; k++) {
-        SL_TRY(p->trial[k].status);
+        fresh[k - first] = &p->trial[k];
     }
+    int64_t small = 0; /* whole charts that cost no more than surroundings */
+    for (int64_t k = 0; k < p->count - first; k++) {
+        sl_opt_trial *trial = fresh[k];
+        if (state->chart[trial->old[0]].patch->nt < SMALL) {
+            fresh[k] = fresh[small];
+            fresh[small++] = trial;
+        }
+    }
+    status = run_trials(state, fresh, small, probe_range);
+    status = status == SL_OK ? run_trials(state, fresh + small, p->count - first - small, guess_range) : status;
+    sl_free(fresh);
 cleanup:
     return status;
 }
@@ -172,6 +208,41 @@ static bool only_charts_missed(const sl_opt_state *state)
     return total.stretch <= state->def->target_stretch && total.angle <= state->def->target_angle;
 }
 
+/* The candidate of the best score, of all or of those that are only guessed at; -1 = none is worth anything. */
+static int64_t find_best(const sl_opt_state *state, const pool *p, double wanted, bool guessed)
+{
+    int64_t best = -1;
+    double most = 0.0;
+    const bool focus = only_charts_missed(state);
+    for (int64_t k = 0; k < p->count; k++) {
+        const bool counts = !focus || !sl_opt_chart_within(state, &state->chart[p->trial[k].old[0]].sums);
+        const double s = !counts || (guessed && p->trial[k].probed) ? 0.0 : score(state, &p->trial[k], wanted);
+        best = s > most ? k : best;
+        most = fmax(s, most);
+    }
+    return best;
+}
+
+/* The best of those that are only guessed at, on their whole charts. *count = how many there were. */
+static sl_status probe_best(const sl_opt_state *state, pool *p, double wanted, int32_t *count)
+{
+    sl_opt_trial *list[PROBES];
+    int32_t n = 0;
+    for (; n < PROBES; n++) {
+        int64_t best = find_best(state, p, wanted, true);
+        for (int64_t k = 0; k < p->count && best < 0; k++) { /* guesses may be wrong */
+            best = p->trial[k].probed ? -1 : k;
+        }
+        if (best < 0) {
+            break;
+        }
+        list[n] = &p->trial[best];
+        list[n]->probed = true;
+    }
+    *count = n;
+    return run_trials(state, list, n, probe_range);
+}
+
 /* A chart that a dart did not help may be held back by its own border: once for each, parting it is a candidate. */
 static sl_status add_parting(const sl_opt_state *state, int32_t c, pool *p)
 {
@@ -187,6 +258,7 @@ static sl_status add_parting(const sl_opt_state *state, int32_t c, pool *p)
     SL_TRY(sl_reserve((void **)&p->stamp, &p->stamp_capacity, p->count + 1, sizeof *p->stamp));
     p->parted[p->nparted++] = p->stamp[p->count] = stamp;
     SL_TRY(sl_opt_part(state, c, &p->trial[p->count++]));
+    p->trial[p->count - 1].probed = true;
 cleanup:
     return status;
 }
@@ -196,21 +268,16 @@ static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
 {
     sl_status status = SL_OK;
     const double wanted = need(state);
-    const bool focus = only_charts_missed(state);
     *taken = -1;
     while (*taken < 0) {
-        int64_t best = -1;
-        double most = 0.0;
-        for (int64_t k = 0; k < p->count; k++) {
-            const bool counts = !focus || !sl_opt_chart_within(state, &state->chart[p->trial[k].old[0]].sums);
-            const double s = counts ? score(state, &p->trial[k], wanted) : 0.0;
-            best = s > most ? k : best;
-            most = fmax(s, most);
-        }
-        if (best < 0) {
-            break;
-        }
-        if (p->trial[best].settled) {
+        const int64_t best = find_best(state, p, wanted, false);
+        if (best < 0 || !p->trial[best].probed) {
+            int32_t count;
+            SL_TRY(probe_best(state, p, wanted, &count));
+            if (count == 0) {
+                break;
+            }
+        } else if (p->trial[best].settled) {
             *taken = best;
             continue;
         }

@@ -315,7 +315,8 @@ cleanup:
 static sl_status add_dart(dart_field *d, int32_t c, int32_t tip, bool chord, sl_opt_trial *list, int32_t *count)
 {
     sl_opt_trial *trial = &list[*count];
-    *trial = (sl_opt_trial){.old = {c, -1}, .edge = sl_alloc(2 * (int64_t)d->patch->nv, sizeof *trial->edge)};
+    *trial = (sl_opt_trial){
+        .old = {c, -1}, .nto = chord ? 2 : 1, .edge = sl_alloc(2 * (int64_t)d->patch->nv, sizeof *trial->edge)};
     if (trial->edge == NULL) {
         return SL_OUT_OF_MEMORY;
     }

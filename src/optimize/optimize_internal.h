@@ -5,6 +5,7 @@
 
 #include "mesh/patch.h"
 #include "optimize/optimize.h"
+#include "param/stretch.h"
 
 /* The piece to be cut, as triangles. Halfedges are those of `patch`: corner c = 3 t + k. */
 typedef struct sl_opt_surface {
@@ -109,6 +110,7 @@ typedef struct sl_opt_trial {
     sl_opt_chart *to; /* nto, owned */
     int32_t nto;
     bool valid;    /* all disks, and without flips */
+    bool probed;   /* a cut: its charts are made, and ranked by a few steps; before that it is guessed at */
     bool settled;  /* solved to the end, no overlap */
     bool dropped;  /* not solved at all: two charts joined as they lie overlap */
     double length; /* of the edges, over sqrt(area) */
@@ -127,11 +129,18 @@ SL_NODISCARD sl_status sl_opt_trial_make(const sl_opt_state *state, sl_opt_trial
  * the geometric mean; HUGE_VAL where the trial is not valid or a chart of it beyond max_stretch. */
 void sl_opt_shares(const sl_opt_state *state, const sl_opt_trial *trial, double *largest, double *mean);
 
+/* A guess at what a cut leaves of its chart's loss, by its surroundings alone: trial->length, cost, loss; valid = it
+ * could be solved. The trial need not be made; nto is believed. */
+SL_NODISCARD sl_status sl_opt_trial_guess(const sl_opt_state *state, sl_opt_trial *trial);
+
 /* A few Newton steps for ranking a cut. */
 SL_NODISCARD sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_trial *trial);
 
-/* Solves the charts to the end and proves them embedded; trial->valid = trial->settled = the outcome. */
+/* Solves the charts of a cut to the end and proves them embedded; trial->valid = trial->settled = the outcome. */
 SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial);
+
+/* The same of a sewing: first roughly, and to the end only where that leaves hope for the targets. */
+SL_NODISCARD sl_status sl_opt_trial_sew(const sl_opt_state *state, sl_opt_trial *trial);
 
 /* Replaces the charts of the state by the trial's, which is emptied. SL_OUT_OF_MEMORY leaves all as it was. */
 SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
@@ -149,6 +158,14 @@ typedef enum sl_opt_effort {
  * from which a solve that keeps the border simple may start; NULL: that is uv. *embedded = proven. */
 SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort,
                                     const double *origin, double *uv, bool *embedded);
+
+/* Solves a chart roughly, from the map at hand or where that has flips from nothing. workspace: for sl_opt_finish. */
+SL_NODISCARD sl_status sl_opt_sketch(const sl_opt_state *state, sl_opt_chart *chart, sl_stretch_workspace *workspace,
+                                     bool *embedded);
+
+/* On from there to the end. */
+SL_NODISCARD sl_status sl_opt_finish(const sl_opt_state *state, sl_opt_chart *chart, sl_stretch_workspace *workspace,
+                                     bool *embedded);
 
 /* sl_certify_embedding of a chart. */
 SL_NODISCARD sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out);
@@ -194,6 +211,15 @@ SL_NODISCARD sl_status sl_opt_windows(const sl_opt_state *state, sl_opt_trial **
 /* The rigid motion (cos, sin, shift) of chart trial->old[1] that brings the window's banks together best; returns the
  * root mean square of what is left between them. Within one chart the motion is none. */
 double sl_opt_align(const sl_opt_state *state, const sl_opt_trial *trial, double motion[4]);
+
+/* The map that sewing starts from: the sewn chart with the banks of the window brought together and the surface behind
+ * them following. uv: patch->nv x 2, out. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_opt_close_banks(const sl_opt_state *state, const sl_opt_trial *trial, const sl_patch *patch,
+                                          double *uv);
+
+/* Do the two charts of a window, brought together by sl_opt_align, lie in each other by more than what the window's
+ * gap explains? SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_opt_interlocks(const sl_opt_state *state, const sl_opt_trial *trial, bool *interlocks);
 
 /* Sews greedily while the targets stay met. */
 SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);

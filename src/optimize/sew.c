@@ -10,11 +10,15 @@
 enum { BATCH = 6 };                   /* windows solved at a time, whatever the number of threads */
 static const double HOPE = 0.97;      /* geometric mean of the shares of both budgets below which a balance is tried */
 static const double LEAST_GAP = 1e-4; /* of the surface's unit: gaps below it are as good as none */
+static const double GAP_CHANGE = 0.2;
 static const int32_t TRIALS_A_ROUND = 40; /* without success, then sewing ends */
 
-/* A window that was refused. */
+/* A window that was refused, by the edges at its ends. */
 typedef struct refusal {
-    int32_t stamp[2], ends[2];
+    int32_t ends[2];
+    double gap;   /* between its banks then */
+    double share; /* of the budgets that it would have cost: the mean; HUGE_VAL = no valid chart came of it */
+    double length;
 } refusal;
 
 typedef struct sewing {
@@ -23,6 +27,7 @@ typedef struct sewing {
     int64_t count;
     refusal *refused;
     int64_t nrefused, capacity;
+    double room; /* what is left of the budgets, the mean */
 } sewing;
 
 static void clear_windows(sewing *s)
@@ -35,28 +40,59 @@ static void clear_windows(sewing *s)
     s->count = 0;
 }
 
-static refusal refusal_of(const sewing *s, const sl_opt_trial *t)
+/* Does the window begin, or end, with the edge? */
+static bool ends_at(const sl_opt_trial *t, int32_t edge)
 {
-    return (refusal){{s->state->chart[t->old[0]].stamp, t->old[1] < 0 ? -1 : s->state->chart[t->old[1]].stamp},
-                     {t->edge[0], t->edge[t->nedge - 1]}};
+    return t->edge[0] == edge || t->edge[t->nedge - 1] == edge;
 }
 
-static bool was_refused(const sewing *s, const sl_opt_trial *t)
+static bool has_edge(const sl_opt_trial *t, int32_t edge)
 {
-    const refusal r = refusal_of(s, t);
-    for (int64_t k = 0; k < s->nrefused; k++) {
-        if (memcmp(&s->refused[k], &r, sizeof r) == 0) {
+    for (int32_t k = 0; k < t->nedge; k++) {
+        if (t->edge[k] == edge) {
             return true;
         }
     }
     return false;
 }
 
-static sl_status refuse(sewing *s, const sl_opt_trial *t)
+/* A window cannot do better than it did while the charts only grew, nor one that contains it; and a part of one that
+ * cost too much by far costs too much still. Where nothing valid came of it, other charts may have other borders. */
+static bool is_vain(const refusal *r, const sl_opt_trial *t, double gap, double room)
 {
+    const bool same = t->edge[0] == r->ends[0] && t->edge[t->nedge - 1] == r->ends[1];
+    if (r->share == HUGE_VAL) {
+        return same && fabs(gap - r->gap) <= GAP_CHANGE * r->gap;
+    }
+    if (same || (t->length >= r->length && has_edge(t, r->ends[0]) && has_edge(t, r->ends[1]))) {
+        return true;
+    }
+    const double part = t->length / r->length;
+    return (ends_at(t, r->ends[0]) || ends_at(t, r->ends[1])) && part < 1.0 && r->share * part * part * part > room;
+}
+
+static bool was_refused(const sewing *s, const sl_opt_trial *t)
+{
+    double motion[4];
+    const double gap = sl_opt_align(s->state, t, motion);
+    for (int64_t k = 0; k < s->nrefused; k++) {
+        if (is_vain(&s->refused[k], t, gap, s->room)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* share: what the window would cost of the budgets. */
+static sl_status refuse(sewing *s, const sl_opt_trial *t, double share)
+{
+    double motion[4];
     const sl_status status = sl_reserve((void **)&s->refused, &s->capacity, s->nrefused + 1, sizeof *s->refused);
     if (status == SL_OK) {
-        s->refused[s->nrefused++] = refusal_of(s, t);
+        s->refused[s->nrefused++] = (refusal){.ends = {t->edge[0], t->edge[t->nedge - 1]},
+                                              .gap = sl_opt_align(s->state, t, motion),
+                                              .share = share,
+                                              .length = t->length};
     }
     return status;
 }
@@ -93,6 +129,9 @@ static sl_status list_windows(sewing *s)
     for (int64_t k = 0; k < s->count; k++) {
         double motion[4];
         const double gap = sl_opt_align(s->state, &s->list[k], motion) / unit;
+        for (int32_t e = 0; e < s->list[k].nedge; e++) {
+            s->list[k].length += s->state->surface->length[s->list[k].edge[e]] / unit;
+        }
         s->list[k].rank = saving(s->state, &s->list[k]) / (gap + LEAST_GAP);
     }
     if (s->count > 1) {
@@ -108,11 +147,33 @@ static void settle_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     sl_opt_trial **batch = ((sl_opt_trial ***)user)[1];
     for (int64_t k = begin; k < end; k++) {
         sl_opt_trial *t = batch[k];
-        t->status = sl_opt_trial_make(s->state, t);
+        t->status = sl_opt_interlocks(s->state, t, &t->dropped);
+        if (t->status == SL_OK && !t->dropped) {
+            t->status = sl_opt_trial_make(s->state, t);
+        }
         if (t->status == SL_OK && t->valid) {
-            t->status = sl_opt_trial_settle(s->state, t);
+            t->status = sl_opt_trial_sew(s->state, t);
         }
     }
+}
+
+/* Geometric mean of the shares of the budgets as they are. */
+static double share_used(const sl_opt_state *state)
+{
+    double largest, mean;
+    sl_opt_shares(state, NULL, &largest, &mean);
+    return mean;
+}
+
+/* What comes of one window tells about others that begin or end with it: they wait. */
+static bool shares_end(sl_opt_trial *const *batch, int32_t n, const sl_opt_trial *t)
+{
+    for (int32_t k = 0; k < n; k++) {
+        if (t->old[1] < 0 && (ends_at(t, batch[k]->edge[0]) || ends_at(t, batch[k]->edge[batch[k]->nedge - 1]))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* Applies the trial; where only another weight of the energy could keep the targets met, tries that, and puts all back
@@ -150,15 +211,18 @@ static sl_status try_batch(sewing *s, int32_t *count, int32_t *tried, bool *prog
     sl_opt_trial *batch[BATCH];
     int32_t n = 0;
     *progress = false;
+    s->room = fmax(HOPE - share_used(s->state), 0.0);
     for (int64_t k = 0; k < s->count && n < BATCH; k++) {
-        if (s->list[k].nedge > 0 && !was_refused(s, &s->list[k])) { /* one that was put back is empty */
-            batch[n++] = &s->list[k];
+        sl_opt_trial *t = &s->list[k];
+        if (t->nedge > 0 && !was_refused(s, t) && !shares_end(batch, n, t)) { /* one that was put back is empty */
+            batch[n++] = t;
         }
     }
     void *user[2] = {s, batch};
     sl_parallel_for(s->state->context, n, 1, settle_range, user);
     *count = n;
     *tried = 0;
+    const double used = share_used(s->state);
     double largest[BATCH], mean[BATCH], worth[BATCH];
     for (int32_t k = 0; k < n; k++) {
         SL_TRY(batch[k]->status);
@@ -167,7 +231,7 @@ static sl_status try_batch(sewing *s, int32_t *count, int32_t *tried, bool *prog
         const bool hope = largest[k] <= 1.0 || mean[k] <= HOPE;
         worth[k] = hope ? saving(s->state, batch[k]) / (0.05 + mean[k]) : 0.0;
         if (!hope) {
-            SL_TRY(refuse(s, batch[k]));
+            SL_TRY(refuse(s, batch[k], mean[k] < HUGE_VAL ? fmax(mean[k] - used, 0.0) : HUGE_VAL));
         }
     }
     while (!*progress) {
@@ -179,12 +243,9 @@ static sl_status try_batch(sewing *s, int32_t *count, int32_t *tried, bool *prog
             break;
         }
         worth[best] = 0.0;
-        const refusal key = refusal_of(s, batch[best]);
+        SL_TRY(refuse(s, batch[best], fmax(mean[best] - used, 0.0))); /* accept empties the trial */
         SL_TRY(accept(s, batch[best], largest[best], progress));
-        if (!*progress) { /* the trial's charts are gone with the state they were in */
-            SL_TRY(sl_reserve((void **)&s->refused, &s->capacity, s->nrefused + 1, sizeof *s->refused));
-            s->refused[s->nrefused++] = key;
-        }
+        s->nrefused -= *progress;
     }
     s->state->info.trials += *tried;
     s->state->info.sewings += *progress;

@@ -1,7 +1,6 @@
 /* Charts laid flat: warm from the UVs at hand where that can be, else from nothing; proven to be embedded. */
-#include "optimize/optimize_internal.h"
-
 #include "base/memory.h"
+#include "optimize/optimize_internal.h"
 #include "overlap/certificate.h"
 #include "param/open.h"
 #include "param/stretch.h"
@@ -10,10 +9,14 @@
 #include <string.h>
 
 static const double SETTLED = 1e-4;             /* relative decrease at which a chart is solved */
+static const double SKETCHED = 1e-2;            /* ... well enough to see whether it is worth more */
 static const double OPEN_SHARE = 0x1p-10;       /* of a border edge: room made between the banks of a fresh cut */
 static const double W_LOW = -5.0, W_HIGH = 1.0; /* lower ones hardly gain angle, and what cuts promise there is noise */
 static const int BALANCE_ROUNDS = 6;
-static const double BALANCED = 0.02; /* the two shares of the budgets agree within this ratio */
+static const double BALANCED = 0.02;     /* the two shares of the budgets agree within this ratio */
+static const double BALANCED_FAR = 0.15; /* ... while their mean is above FAR_SHARE */
+static const double FAR_SHARE = 1.3;
+static const double FIRST_STEP = 0.25;
 
 static sl_stretch_def stretch_def(const sl_opt_state *state)
 {
@@ -190,6 +193,48 @@ cleanup:
     return status;
 }
 
+static sl_status is_embedded(const sl_opt_chart *chart, bool *embedded)
+{
+    sl_certificate certificate = {0};
+    const sl_status status = sl_opt_certify(chart->patch, chart->uv, &certificate);
+    *embedded = status == SL_OK && certificate.embedded;
+    return status == SL_BAD_INPUT ? SL_OK : status;
+}
+
+sl_status sl_opt_sketch(const sl_opt_state *state, sl_opt_chart *chart, sl_stretch_workspace *workspace, bool *embedded)
+{
+    sl_status status = SL_OK;
+    sl_stretch_def def = stretch_def(state);
+    bool solved;
+    *embedded = false;
+    def.relative_decrease = SKETCHED;
+    def.workspace = workspace;
+    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+    if (!solved) {
+        SL_TRY(outcome(sl_stretch_unfold(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+    }
+    if (solved) {
+        SL_TRY(is_embedded(chart, embedded));
+    }
+cleanup:
+    return status;
+}
+
+sl_status sl_opt_finish(const sl_opt_state *state, sl_opt_chart *chart, sl_stretch_workspace *workspace, bool *embedded)
+{
+    sl_status status = SL_OK;
+    sl_stretch_def def = stretch_def(state);
+    bool solved;
+    *embedded = false;
+    def.workspace = workspace;
+    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+    if (solved) {
+        SL_TRY(is_embedded(chart, embedded));
+    }
+cleanup:
+    return status;
+}
+
 /* All charts with another weight, beside those of the state. */
 typedef struct resolution {
     sl_opt_state *state;
@@ -290,32 +335,59 @@ static double imbalance(const sl_opt_state *state)
            log(fmax(total.angle - 1.0, least) / fmax(state->def->target_angle - 1.0, least));
 }
 
-/* Bisection, in growing steps until there is a bound on each side. A weight with which a chart has no embedding is such
- * a bound: taking the other charts alone with it, the weight would run away from the maps. A piece that is flat anyway
- * has nothing to balance. */
+/* How far the shares may be from each other: where neither target is near, roughly will do. */
+static double tolerance(const sl_opt_state *state)
+{
+    sl_opt_total total;
+    sl_opt_totals(state, &total);
+    const double q = (total.stretch - 1.0) / fmax(state->def->target_stretch - 1.0, 1e-9);
+    const double r = (total.angle - 1.0) / fmax(state->def->target_angle - 1.0, 1e-9);
+    return q * r > FAR_SHARE * FAR_SHARE ? BALANCED_FAR : BALANCED;
+}
+
+/* The next weight: where the secant through the last two points vanishes, if that is between the bounds; not more than
+ * twice as far as the last step. */
+static double next_weight(double w, double f, double w0, double f0, double low, double high)
+{
+    const double step = 2.0 * fabs(w - w0), slope = (f - f0) / (w - w0); /* 0 where a bound was all that came of it */
+    double next = slope < 0.0 ? w - f / slope : (f > 0.0 ? high : low);
+    next = fmin(fmax(next, w - step), w + step);
+    if (!(next > low) || !(next < high)) {
+        next = f > 0.0 ? w + 0.5 * fmin(high - w, 2.0 * step) : w - 0.5 * fmin(w - low, 2.0 * step);
+    }
+    return next;
+}
+
+/* Secants until there is a bound on each side and within them, bisection where they lead out. A weight with which a
+ * chart has no embedding is such a bound: taking the other charts alone with it, the weight would run away from the
+ * maps. A piece that is flat anyway has nothing to balance. */
 sl_status sl_opt_balance(sl_opt_state *state)
 {
     sl_status status = SL_OK;
-    double low = -HUGE_VAL, high = HUGE_VAL, step = 0.25;
+    double low = W_LOW, high = W_HIGH, w0 = NAN, f0 = NAN;
     for (int k = 0; k < BALANCE_ROUNDS; k++) {
-        const double f = imbalance(state), before = state->w;
+        const double f = imbalance(state), w = state->w;
         bool all;
-        if (fabs(f) < BALANCED || (f > 0.0 && before >= W_HIGH) || (f < 0.0 && before <= W_LOW)) {
+        if (fabs(f) < tolerance(state) || (f > 0.0 && w >= W_HIGH) || (f < 0.0 && w <= W_LOW)) {
             break;
         }
-        if (f > 0.0) { /* too much stretch */
-            low = before;
-            state->w = high < HUGE_VAL ? 0.5 * (low + high) : fmin(W_HIGH, before + step);
+        low = f > 0.0 ? w : low; /* too much stretch: w rises */
+        high = f > 0.0 ? high : w;
+        if (isnan(w0)) {
+            state->w = f > 0.0 ? fmin(high, w + FIRST_STEP) : fmax(low, w - FIRST_STEP);
         } else {
-            high = before;
-            state->w = low > -HUGE_VAL ? 0.5 * (low + high) : fmax(W_LOW, before - step);
+            state->w = next_weight(w, f, w0, f0, low, high);
         }
-        step *= 2.0;
         SL_TRY(resolve(state, SL_OPT_WARM, true, &all));
-        if (!all) {
+        if (all) {
+            w0 = w;
+            f0 = f;
+        } else {
             low = f > 0.0 ? low : state->w;
             high = f > 0.0 ? state->w : high;
-            state->w = before;
+            state->w = w;
+            w0 = f > 0.0 ? high : low; /* the next step: half as far */
+            f0 = f;
         }
     }
 cleanup:

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double SKETCH_HOPE = 1.03; /* share of the budgets beyond which a sewing is refused half solved */
+
 void sl_opt_trial_clear(sl_opt_trial *trial)
 {
     for (int32_t k = 0; trial->to != NULL && k < trial->nto; k++) {
@@ -91,31 +93,6 @@ static void find_components(const sl_opt_state *state, const sl_opt_trial *trial
     m->first[m->ncomponents] = n;
 }
 
-/* The UVs at hand, the second chart brought to the first; vertices where banks meet get the mean of their corners. */
-static sl_status gather(const sl_opt_state *state, const sl_opt_trial *trial, const double motion[4],
-                        sl_opt_chart *chart)
-{
-    const sl_patch *p = chart->patch;
-    double *weight = sl_calloc(p->nv, sizeof *weight);
-    if (weight == NULL) {
-        return SL_OUT_OF_MEMORY;
-    }
-    for (int32_t c = 0; c < 3 * p->nt; c++) {
-        const double *uv = state->uv + 2 * (int64_t)p->corner[c];
-        double *out = chart->uv + 2 * (int64_t)p->tri[c];
-        const bool moves = trial->old[1] >= 0 && state->chart_of[p->facet[c / 3]] == trial->old[1];
-        out[0] += moves ? motion[0] * uv[0] - motion[1] * uv[1] + motion[2] : uv[0];
-        out[1] += moves ? motion[1] * uv[0] + motion[0] * uv[1] + motion[3] : uv[1];
-        weight[p->tri[c]] += 1.0;
-    }
-    for (int32_t v = 0; v < p->nv; v++) {
-        chart->uv[2 * (int64_t)v] /= weight[v];
-        chart->uv[2 * (int64_t)v + 1] /= weight[v];
-    }
-    sl_free(weight);
-    return SL_OK;
-}
-
 static sl_status make_chart(const sl_opt_state *state, const sl_opt_trial *trial, const making *m, int32_t k,
                             sl_opt_chart *chart)
 {
@@ -130,9 +107,7 @@ static sl_status make_chart(const sl_opt_state *state, const sl_opt_trial *trial
         return SL_OUT_OF_MEMORY;
     }
     if (trial->sew) {
-        double motion[4];
-        (void)sl_opt_align(state, trial, motion);
-        return gather(state, trial, motion, chart);
+        return sl_opt_close_banks(state, trial, p, chart->uv);
     }
     for (int32_t c = 0; c < 3 * p->nt; c++) {
         memcpy(chart->uv + 2 * (int64_t)p->tri[c], state->uv + 2 * (int64_t)p->corner[c], 2 * sizeof *chart->uv);
@@ -201,7 +176,7 @@ static sl_status drop_crossing(sl_opt_trial *trial)
     }
     const sl_status status = sl_opt_certify(trial->to[0].patch, trial->to[0].uv, &certificate);
     trial->dropped = certificate.border_crossings > 0 && certificate.flipped + certificate.degenerate == 0;
-    trial->valid = !trial->dropped;
+
     return status;
 }
 
@@ -227,16 +202,45 @@ static sl_status settle_cut(const sl_opt_state *state, sl_opt_chart *chart, bool
 sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
-    SL_TRY(drop_crossing(trial));
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        sl_opt_chart *chart = &trial->to[k];
-        SL_TRY(trial->sew ? sl_opt_solve(state, chart->patch, SL_OPT_SEWN, NULL, chart->uv, &trial->valid)
-                          : settle_cut(state, chart, &trial->valid));
+        SL_TRY(settle_cut(state, &trial->to[k], &trial->valid));
     }
     trial->settled = trial->valid;
     if (trial->valid) {
         sum_loss(state, trial);
     }
 cleanup:
+    return status;
+}
+
+/* Is the trial worth more steps? The larger share may still fall, by another weight of the energy, too. */
+static bool has_hope(const sl_opt_state *state, const sl_opt_trial *trial, double slack)
+{
+    double largest, mean;
+    sl_opt_shares(state, trial, &largest, &mean);
+    return mean <= slack;
+}
+
+sl_status sl_opt_trial_sew(const sl_opt_state *state, sl_opt_trial *trial)
+{
+    sl_status status = SL_OK;
+    sl_stretch_workspace *workspace = NULL;
+    SL_TRY(drop_crossing(trial));
+    if (!trial->valid || trial->nto != 1) {
+        trial->valid = false;
+        return SL_OK;
+    }
+    SL_TRY(sl_stretch_workspace_create(&workspace));
+    SL_TRY(sl_opt_sketch(state, &trial->to[0], workspace, &trial->valid));
+    if (trial->valid) {
+        sum_loss(state, trial);
+        if (has_hope(state, trial, SKETCH_HOPE)) {
+            SL_TRY(sl_opt_finish(state, &trial->to[0], workspace, &trial->valid));
+            sum_loss(state, trial);
+        }
+    }
+    trial->settled = trial->valid;
+cleanup:
+    sl_stretch_workspace_free(workspace);
     return status;
 }
