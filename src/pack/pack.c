@@ -102,13 +102,18 @@ cleanup:
     return status;
 }
 
+/* Cells along a page's width at last: those of half a texel are fine enough. */
+static int32_t finest_grid(const sl_pack_def *def)
+{
+    const int32_t finest = def->effort >= FINEST_EFFORT ? FINEST : FINE, limit = 2 * def->resolution;
+    return limit < finest ? limit : finest;
+}
+
 /* Packs the arrangement tighter, on ever finer grids; charts roam the page on the first two. */
 static sl_status tighten(const sl_pack_task *task, const sl_pack_def *def, sl_arrangement *best, int32_t *attempts)
 {
     sl_status status = SL_OK;
-    const int32_t first = sl_search_grid(task), limit = 2 * def->resolution;
-    int32_t finest = def->effort >= FINEST_EFFORT ? FINEST : FINE;
-    finest = limit < finest ? limit : finest; /* cells of half a texel are fine enough */
+    const int32_t first = sl_search_grid(task), finest = finest_grid(def);
     const int32_t starts = def->effort >= 8 ? 4 : def->effort >= 6 ? 2 : 1;
     int32_t sweeps = FEWEST_SWEEPS << (def->effort / 2);
     for (int32_t grid = first, level = 0; grid <= finest; grid *= 2, level++) {
@@ -179,8 +184,11 @@ sl_status sl_pack(int32_t count, const sl_pack_chart *charts, const sl_pack_def 
                                   def->effort > 0 ? first_work << def->effort : 0};
     if (count > 0) {
         SL_TRY(sl_search(&task, &search, &best, &info->attempts));
-        if (def->density <= 0.0 && best.scale > 0.0 && count <= MOST_CHARTS) {
+        if (best.scale > 0.0 && count <= MOST_CHARTS && def->density <= 0.0) {
             SL_TRY(tighten(&task, def, &best, &info->attempts));
+        } else if (best.scale > 0.0 && count <= MOST_CHARTS && def->effort > 0) {
+            SL_TRY(sl_fewer_pages(&task, def->rotations, FEWEST_SWEEPS << (def->effort / 2), finest_grid(def), &best,
+                                  &info->attempts));
         }
     }
     hand_out(&task, &best, placement, info);

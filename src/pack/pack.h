@@ -53,7 +53,8 @@ typedef struct sl_pack_info {
  * bays. Largest first, each goes where it lies lowest and leftmost; a search over orders and orientations follows, at
  * growing scales. Then up to 2048 charts are let overlap at larger scales and pushed apart again, on finer and finer
  * grids, down to a 2048th of the page (reports/design/packing.md). A density that is given is kept and fills pages one
- * after another.
+ * after another; then (effort above 0) the emptiest page's charts are pushed in among the others, page by page, as long
+ * as that succeeds.
  * Zero-size charts (isolated degenerate facets) get one texel each. SL_INFEASIBLE (so many charts that one texel each
  * and their margins do not fit, or not at the density asked for), SL_BAD_INPUT (UV not finite), SL_OUT_OF_MEMORY,
  * SL_CANCELLED. Work is counted, never timed; the same bytes for any number of threads. */

@@ -357,7 +357,8 @@ static void choose_angles(separation *s, const sl_pose *pose)
     }
 }
 
-static sl_status try_scale(separation *s, double scale, sl_arrangement *best, bool *fits)
+/* always: the poses become those that the charts came to even where they still overlap. */
+static sl_status try_scale(separation *s, double scale, bool always, sl_arrangement *best, bool *fits)
 {
     sl_status status = SL_OK;
     choose_angles(s, best->pose);
@@ -365,11 +366,12 @@ static sl_status try_scale(separation *s, double scale, sl_arrangement *best, bo
     if (s->def->far) {
         SL_TRY(sl_sheet_init(s->task, scale, s->def->grid / s->factor, s->turns, s->angle, &s->coarse));
     }
-    *fits = take_places(s, best->pose);
-    if (*fits) {
+    const bool on_pages = take_places(s, best->pose);
+    *fits = false;
+    if (on_pages) {
         SL_TRY(push_apart(s, fits));
     }
-    if (*fits) {
+    if (*fits || (always && on_pages)) {
         best->scale = scale;
         sl_pose_from_spots(&s->sheet, s->spot, best->pose);
     }
@@ -433,13 +435,27 @@ sl_status sl_separate(const sl_pack_task *task, const sl_separate_def *def, sl_a
     SL_TRY(separation_init(&s));
     for (int32_t given_up = 0, k = 0; given_up <= def->halvings && k < MAX_SCALES; k++) {
         bool fits = false;
-        SL_TRY(try_scale(&s, best->scale * (1.0 + step), best, &fits));
+        SL_TRY(try_scale(&s, best->scale * (1.0 + step), false, best, &fits));
         ++*attempts;
         if (!fits) {
             step *= 0.5;
             given_up++;
         }
     }
+cleanup:
+    separation_clear(&s);
+    return status;
+}
+
+sl_status sl_separate_at(const sl_pack_task *task, const sl_separate_def *def, sl_arrangement *arrangement, bool *apart,
+                         int32_t *attempts)
+{
+    separation s = {.task = task, .def = def};
+    sl_status status = SL_OK;
+    *apart = false;
+    SL_TRY(separation_init(&s));
+    SL_TRY(try_scale(&s, arrangement->scale, true, arrangement, apart));
+    ++*attempts;
 cleanup:
     separation_clear(&s);
     return status;

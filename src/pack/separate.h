@@ -25,4 +25,16 @@ typedef struct sl_separate_def {
 SL_NODISCARD sl_status sl_separate(const sl_pack_task *task, const sl_separate_def *def, sl_arrangement *best,
                                    int32_t *attempts);
 
+/* The same at the scale that the arrangement has: charts that overlap there are pushed apart. *apart = false: they
+ * still overlap, less than before as a rule; the poses are where they came to, for a finer grid. def->step and halvings
+ * are not used. Statuses and cost as sl_separate. */
+SL_NODISCARD sl_status sl_separate_at(const sl_pack_task *task, const sl_separate_def *def, sl_arrangement *arrangement,
+                                      bool *apart, int32_t *attempts);
+
+/* At the scale that best has: charts of the emptiest page go onto the others and all are pushed apart there, for as
+ * long as that succeeds. sweeps: as sl_separate_def.sweeps; finest: cells along a page's width. SL_OUT_OF_MEMORY,
+ * SL_CANCELLED. */
+SL_NODISCARD sl_status sl_fewer_pages(const sl_pack_task *task, sl_pack_rotations rotations, int32_t sweeps,
+                                      int32_t finest, sl_arrangement *best, int32_t *attempts);
+
 #endif

@@ -321,6 +321,37 @@ static void a_density_that_is_given_is_kept(void **state)
     free(set);
 }
 
+/* What the first layout spreads over more pages is pushed together; charts stay apart. */
+static void effort_saves_pages_at_a_given_density(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x7a2c);
+    int32_t pages[2] = {0, 0};
+    for (int trial = 0; trial < 4 * test_multiplier(); trial++) {
+        chart_set *set = random_charts(&rng, 22);
+        sl_pack_def def = {.resolution = 256, .margin = 2.0, .pages = 2, .effort = 1};
+        sl_placement place[MAX_CHARTS];
+        sl_pack_info info;
+        assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &info), SL_OK);
+        def.density = 0.97 * info.scale * 256; /* nearly the most that two pages hold */
+        def.pages = 9;
+        for (def.effort = 0; def.effort < 2; def.effort++) {
+            assert_int_equal(sl_pack(set->count, set->chart, &def, NULL, place, &info), SL_OK);
+            assert_true(test_near(info.scale * 256, def.density, 1e-12 * def.density));
+            pages[def.effort] += info.pages;
+            for (int32_t c = 0; c < set->count; c++) {
+                assert_true(place[c].page >= 0 && place[c].page < info.pages);
+                for (int32_t d = 0; d < c; d++) {
+                    assert_true(place[c].page != place[d].page ||
+                                chart_distance(set, c, d, place, &info, 256) >= 2.0 - 1e-6);
+                }
+            }
+        }
+        free(set);
+    }
+    assert_true(pages[1] < pages[0]);
+}
+
 /* A square ring with a chart that only its hole has room for. */
 static void a_chart_nests_in_the_hole_of_another(void **state)
 {
@@ -420,6 +451,7 @@ int main(void)
         cmocka_unit_test(more_effort_finds_larger_scales),
         cmocka_unit_test(charts_fill_several_pages_and_pages_that_are_not_square),
         cmocka_unit_test(a_density_that_is_given_is_kept),
+        cmocka_unit_test(effort_saves_pages_at_a_given_density),
         cmocka_unit_test(a_chart_nests_in_the_hole_of_another),
         cmocka_unit_test(the_number_of_threads_changes_nothing),
         cmocka_unit_test(a_needle_is_packed_at_the_length_of_the_page),
