@@ -8,7 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { CLOSED_PARTS = 3 }; /* paths that a closed arc becomes */
+/* Parts whose ends are nearer to each other than this share of their length are halved: a path would take the short
+ * way between the ends of a bend. */
+static const double LEAST_CHORD = 0.6;
+
+/* Weights of the energy beyond these come of borders that held a coarse map back; alone they make no good start. */
+static const double LEAST_W = -8.0, MOST_W = 0.5;
 
 typedef struct carrying {
     const sl_opt_state *coarse;
@@ -52,30 +57,46 @@ static void load_line(carrying *c, const int32_t *arc, int32_t from, int32_t to)
     c->path.width = to > from && length > 0.0 ? length / (to - from) : 1.0;
 }
 
-/* Arcs that come back to where they start become several paths. */
-static int32_t parts_of(const carrying *c, const int32_t *arc, int32_t n)
+/* Does the line double back on itself? */
+static bool is_bent(const carrying *c)
 {
-    const sl_opt_surface *s = c->coarse->surface;
-    const bool closed =
-        sl_opt_fine_vertex(s, c->vertex, arc[0]) == sl_opt_fine_vertex(s, c->vertex, sl_corner_next(arc[n - 1]));
-    return closed ? (n < CLOSED_PARTS ? n : CLOSED_PARTS) : 1;
+    const double *xyz = c->fine->surface->patch->xyz;
+    const int32_t *line = c->path.line, last = c->path.nline - 1;
+    double length = 0.0;
+    for (int32_t k = 0; k < last; k++) {
+        length += sl_vec3_distance(xyz + 3 * (int64_t)line[k], xyz + 3 * (int64_t)line[k + 1]);
+    }
+    return sl_vec3_distance(xyz + 3 * (int64_t)line[0], xyz + 3 * (int64_t)line[last]) < LEAST_CHORD * length;
+}
+
+/* Carries arc[from .. to - 1] over in parts that are straight enough; with `mark` only their ends are taken, so that no
+ * path runs through them. The halves of a part are fewer edges: the recursion ends. */
+static sl_status carry_part(carrying *c, const int32_t *arc, int32_t from, int32_t to, bool mark, bool *carried)
+{
+    sl_status status = SL_OK;
+    load_line(c, arc, from, to);
+    if (to - from > 1 && is_bent(c)) {
+        const int32_t middle = from + (to - from) / 2;
+        SL_TRY(carry_part(c, arc, from, middle, mark, carried));
+        if (*carried) {
+            SL_TRY(carry_part(c, arc, middle, to, mark, carried));
+        }
+    } else if (mark) {
+        c->path.taken[c->path.line[0]] = c->path.taken[c->path.line[c->path.nline - 1]] = 1;
+    } else {
+        SL_TRY(cut_path(c, carried));
+    }
+cleanup:
+    return status;
 }
 
 static sl_status cut_arcs(carrying *c, const sl_opt_arcs *arcs, bool *carried)
 {
     sl_status status = SL_OK;
-    for (int pass = 0; pass < 2; pass++) { /* the ends first: no path may run through them */
+    for (int pass = 0; pass < 2; pass++) {
         for (int32_t k = 0; k < arcs->count && *carried; k++) {
-            const int32_t *arc = arcs->halfedge + arcs->first[k];
-            const int32_t n = arcs->first[k + 1] - arcs->first[k], parts = parts_of(c, arc, n);
-            for (int32_t j = 0; j < parts && *carried; j++) {
-                load_line(c, arc, (int32_t)((int64_t)j * n / parts), (int32_t)((int64_t)(j + 1) * n / parts));
-                if (pass == 0) {
-                    c->path.taken[c->path.line[0]] = c->path.taken[c->path.line[c->path.nline - 1]] = 1;
-                } else {
-                    SL_TRY(cut_path(c, carried));
-                }
-            }
+            SL_TRY(carry_part(c, arcs->halfedge + arcs->first[k], 0, arcs->first[k + 1] - arcs->first[k], pass == 0,
+                              carried));
         }
     }
 cleanup:
@@ -147,7 +168,7 @@ sl_status sl_opt_carry(const sl_opt_state *coarse, const int32_t *vertex, sl_opt
     }
     sl_near_path_clear(&c.path);
     if (*carried) {
-        fine->w = coarse->w;
+        fine->w = fmin(fmax(coarse->w, LEAST_W), MOST_W);
         SL_TRY(sl_opt_guess(coarse, vertex, fine));
         SL_TRY(sl_opt_unfold(fine, true, carried));
     }

@@ -12,6 +12,7 @@ static const int32_t SEARCH_FROM = 30000, TRY_FROM = 48000; /* and of pieces tha
 static const int CARRIES = 3;                               /* of the searched mesh's seams */
 static const int FINISHES = 2;                              /* of the tried mesh's */
 static const double ENOUGH = 0.93;                          /* share of the budget that is well spent */
+static const double SAME = 0.005;                           /* no more comes of searching on */
 static const double MOST_RATIO = 2.0; /* between the losses of one mesh and the next finer, as far as it is believed */
 
 /* A coarse mesh. */
@@ -100,29 +101,82 @@ cleanup:
     return status;
 }
 
-/* Searches the coarse mesh, carries the seams over, and corrects its targets until the finer one's are met and not
- * much is left of them; what is still missing is cut there. *done = false: the seams could not be carried over. */
-static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
+/* Another weight of the energy where that alone may meet both targets. */
+static sl_status weigh_anew(sl_opt_state *state)
+{
+    double largest, mean;
+    sl_opt_shares(state, NULL, &largest, &mean);
+    return largest > 1.0 && mean < 1.0 ? sl_opt_balance(state) : SL_OK;
+}
+
+/* The coarse state whose charts came nearest to the targets on the finer mesh. */
+typedef struct nearest {
+    sl_opt_state state;
+    double share;
+} nearest;
+
+static sl_status remember(const level *l, double share, nearest *best)
+{
+    if (!(share < best->share)) {
+        return SL_OK;
+    }
+    sl_opt_state_clear(&best->state);
+    best->share = share;
+    return sl_opt_state_copy(&l->state, &best->state);
+}
+
+static sl_status try_charts(const level *l, sl_opt_state *finer, double *share, bool *done)
 {
     sl_status status = SL_OK;
-    double share = HUGE_VAL;
-    for (int k = 0; k < CARRIES; k++) {
-        SL_TRY(search_again(l));
-        SL_TRY(carry(l, finer, done));
-        if (!*done) {
-            goto cleanup;
-        }
-        share = share_of(finer);
-        if (share <= 1.0 && share >= ENOUGH) {
-            break;
-        }
-        correct_targets(finer, l);
+    SL_TRY(carry(l, finer, done));
+    if (*done) {
+        SL_TRY(weigh_anew(finer));
+        *share = share_of(finer);
     }
-    finer->info = l->state.info;
-    if (share > 1.0) {
+cleanup:
+    return status;
+}
+
+/* Back to the nearest charts, and what they lack cut on the finer mesh. */
+static sl_status make_good(level *l, nearest *best, sl_opt_state *finer, double *share, bool *done)
+{
+    sl_status status = SL_OK;
+    if (best->share < *share) {
+        const sl_opt_state swap = l->state;
+        l->state = best->state;
+        best->state = swap;
+        SL_TRY(try_charts(l, finer, share, done));
+    }
+    if (*done && *share > 1.0) {
         SL_TRY(sl_opt_cut(finer));
     }
 cleanup:
+    return status;
+}
+
+/* Searches the coarse mesh, carries the seams over, and corrects its targets until the finer one's are met and not
+ * much is left of them. *done = false: the seams could not be carried over. */
+static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
+{
+    sl_status status = SL_OK;
+    nearest best = {.share = HUGE_VAL};
+    double share = HUGE_VAL;
+    for (int k = 0; k < CARRIES; k++) {
+        const double last = share;
+        SL_TRY(search_again(l));
+        SL_TRY(try_charts(l, finer, &share, done));
+        if (!*done || (share <= 1.0 && (share >= ENOUGH || fabs(share - last) < SAME))) {
+            break;
+        }
+        SL_TRY(remember(l, share, &best));
+        correct_targets(finer, l);
+    }
+    finer->info = l->state.info;
+    if (*done && share > 1.0) {
+        SL_TRY(make_good(l, &best, finer, &share, done));
+    }
+cleanup:
+    sl_opt_state_clear(&best.state);
     return status;
 }
 
@@ -130,13 +184,14 @@ cleanup:
 static sl_status finish(level *tried, sl_opt_state *fine, bool *done)
 {
     sl_status status = SL_OK;
+    double share = HUGE_VAL;
     for (int k = 0; k < FINISHES; k++) {
         if (k > 0) {
             correct_targets(fine, tried);
             SL_TRY(sl_opt_cut(&tried->state));
         }
-        SL_TRY(carry(tried, fine, done));
-        if (!*done || share_of(fine) <= 1.0) {
+        SL_TRY(try_charts(tried, fine, &share, done));
+        if (!*done || share <= 1.0) {
             break;
         }
     }
