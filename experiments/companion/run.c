@@ -97,6 +97,8 @@ static void show_plots(exp_page *page)
                     "line the spectral cuts are better. Boxes: the middle half of the models, and the median.");
     exp_page_figure(page, "", "distortion.svg", "every model's distortion over that of spectral cuts",
                     "The same for stretch, angles and areas.");
+    exp_page_figure(page, "", "timings.svg", "every model's CPU time over that of spectral cuts",
+                    "CPU time of the whole unwrap; differs a little from run to run.");
     exp_page_figure(
         page, "", "wins.svg", "on how many models which method is better",
         "Models on which spectral cuts are better (green), equal within a hundredth (grey), worse (orange).");
