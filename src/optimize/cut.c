@@ -345,12 +345,15 @@ sl_status sl_opt_cut(sl_opt_state *state)
             break;
         }
         sl_opt_weigh(state);
+        double since = sl_opt_clock();
         SL_TRY(refresh(state, &p));
+        since = sl_opt_book(state, SL_OPTIMIZE_GUESS, since);
         SL_TRY(choose(state, &p, &taken));
         if ((taken < 0 || !gains_enough(state, &p, taken)) && bisected < MOST_BISECTED) {
             bisected++;
             SL_TRY(bisect_stuck(state, &p, &taken));
         }
+        (void)sl_opt_book(state, SL_OPTIMIZE_CUT, since);
         if (taken < 0) {
             break;
         }

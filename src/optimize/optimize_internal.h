@@ -236,6 +236,10 @@ SL_NODISCARD sl_status sl_opt_search(sl_opt_state *state);
 SL_NODISCARD sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment,
                                     const sl_triangulation *triangulation, bool *done);
 
+/* CPU seconds now; and books those since then. Returns the time now. */
+double sl_opt_clock(void);
+double sl_opt_book(sl_opt_state *state, sl_optimize_stage stage, double since);
+
 /* What seams and charts cost. */
 double sl_opt_price(const sl_opt_state *state);
 

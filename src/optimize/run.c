@@ -28,6 +28,7 @@ sl_optimize_def sl_optimize_default(void)
 typedef struct optimizer {
     const sl_optimize_def *def;
     atomic_int pieces, missed, cuts, sewings, straightened, trials;
+    atomic_llong microseconds[SL_OPTIMIZE_STAGES];
 } optimizer;
 
 /* The scale at which a chart adds least to the atlas's L2: I and a agree. */
@@ -73,7 +74,9 @@ sl_status sl_opt_search(sl_opt_state *state)
             break; /* sewing came to its end with these charts */
         }
         SL_TRY(sl_opt_sew(state));
+        const double since = sl_opt_clock();
         SL_TRY(sl_opt_straighten(state));
+        (void)sl_opt_book(state, SL_OPTIMIZE_STRAIGHTEN, since);
         const double now = sl_opt_price(state);
         if (!(now < best)) {
             break;
@@ -109,6 +112,9 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
     o->sewings += state.info.sewings;
     o->straightened += state.info.straightened;
     o->trials += state.info.trials;
+    for (int k = 0; k < SL_OPTIMIZE_STAGES; k++) {
+        o->microseconds[k] += llround(1e6 * state.info.seconds[k]);
+    }
 cleanup:
     sl_opt_state_clear(&state);
     sl_opt_surface_clear(&surface);
@@ -143,6 +149,9 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
                                    .sewings = o.sewings,
                                    .straightened = o.straightened,
                                    .trials = o.trials};
+        for (int k = 0; k < SL_OPTIMIZE_STAGES; k++) {
+            info->seconds[k] = 1e-6 * (double)o.microseconds[k];
+        }
         for (int32_t k = 0; k < (*out)->nsplit; k++) {
             info->failed -= (*out)->split[k].optimised;
         }

@@ -194,6 +194,7 @@ static sl_status accept(sewing *s, sl_opt_trial *t, double largest, bool *accept
     *accepted = sl_opt_within(s->state, &total);
     if (!*accepted) {
         before.next_stamp = s->state->next_stamp;
+        before.info = s->state->info;
         const sl_opt_state swap = *s->state;
         *s->state = before;
         before = swap;
@@ -257,6 +258,7 @@ sl_status sl_opt_sew(sl_opt_state *state)
 {
     sl_status status = SL_OK;
     sewing s = {.state = state};
+    const double since = sl_opt_clock(), balanced = state->info.seconds[SL_OPTIMIZE_BALANCE];
     int32_t idle = 0;
     sl_opt_weigh(state);
     SL_TRY(list_windows(&s));
@@ -273,6 +275,7 @@ sl_status sl_opt_sew(sl_opt_state *state)
         }
     }
 cleanup:
+    (void)sl_opt_book(state, SL_OPTIMIZE_SEW, since + state->info.seconds[SL_OPTIMIZE_BALANCE] - balanced);
     clear_windows(&s);
     sl_free(s.refused);
     return status;

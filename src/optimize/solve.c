@@ -364,6 +364,7 @@ static double next_weight(double w, double f, double w0, double f0, double low, 
 sl_status sl_opt_balance(sl_opt_state *state)
 {
     sl_status status = SL_OK;
+    const double since = sl_opt_clock();
     double low = W_LOW, high = W_HIGH, w0 = NAN, f0 = NAN;
     for (int k = 0; k < BALANCE_ROUNDS; k++) {
         const double f = imbalance(state), w = state->w;
@@ -391,5 +392,6 @@ sl_status sl_opt_balance(sl_opt_state *state)
         }
     }
 cleanup:
+    (void)sl_opt_book(state, SL_OPTIMIZE_BALANCE, since);
     return status;
 }

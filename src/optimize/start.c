@@ -108,6 +108,7 @@ sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment, const
                        bool *started)
 {
     sl_status status = SL_OK;
+    const double since = sl_opt_clock();
     sl_mesh *mesh = NULL;
     sl_segmentation *seg = NULL;
     const sl_segment_def def = start_def(state, segment);
@@ -116,6 +117,7 @@ sl_status sl_opt_start(sl_opt_state *state, const sl_segment_def *segment, const
     SL_TRY(sl_segment(mesh, triangulation, &def, state->context, &seg));
     SL_TRY(sl_opt_take(state, mesh, seg, started));
 cleanup:
+    (void)sl_opt_book(state, SL_OPTIMIZE_START, since);
     sl_mesh_free(mesh);
     sl_segmentation_free(seg);
     return status;

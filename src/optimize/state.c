@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 static const double MET_WEIGHT = 0.15; /* of a target that is met, against one that is not */
 
@@ -23,6 +24,18 @@ sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def
     }
     memset(out->chart_of, 0xff, (size_t)nt * sizeof *out->chart_of);
     return SL_OK;
+}
+
+double sl_opt_clock(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+double sl_opt_book(sl_opt_state *state, sl_optimize_stage stage, double since)
+{
+    const double now = sl_opt_clock();
+    state->info.seconds[stage] += now - since;
+    return now;
 }
 
 void sl_opt_state_clear(sl_opt_state *state)

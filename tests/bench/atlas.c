@@ -17,10 +17,12 @@
 #include <sys/resource.h>
 #include <time.h>
 
-enum { RESOLUTION = 2048, MOST_ROWS = 256, TARGETS = 5, MESHES = 8 };
+enum { RESOLUTION = 2048, MOST_ROWS = 256, TARGETS = 6, MESHES = 8 };
+enum { DEFAULT = 5 }; /* of the targets */
 static const char *const MESH[MESHES] = {"cow",         "spot",    "suzanne",    "homer",
                                          "cheburashka", "fandisk", "rocker-arm", "hand"};
-static const char *const TARGET[TARGETS] = {"uvatlas", "fine", "xatlas-l2", "xatlas-both", "prototype"};
+static const char *const TARGET[TARGETS] = {"uvatlas", "fine", "xatlas-l2", "xatlas-both", "prototype", "default"};
+static const char *const STAGE[SL_OPTIMIZE_STAGES] = {"start", "guess", "cut", "balance", "sew", "straighten"};
 
 /* One row of the peers, as far as it is compared. */
 typedef struct peer {
@@ -68,6 +70,11 @@ static bool find_task(const peer *row, int nrows, int mesh, int target, task *ou
     if (target == 4) {
         const double *p = PROTOTYPE[mesh];
         *out = (task){p[0], p[1], p[2], p[3], p[2], p[3]};
+        return true;
+    }
+    if (target == DEFAULT) { /* compared with nothing: what the program does without options */
+        const sl_optimize_def def = sl_optimize_default();
+        *out = (task){1, 1, 1, 1, def.target_stretch, def.target_angle};
         return true;
     }
     for (int k = 0; k < nrows; k++) {
@@ -133,8 +140,11 @@ static sl_status run(const sl_polygons *polygons, const task *t, int mesh, int t
     def.optimize.weights = sl_seam_cost_none();
     def.optimize.target_stretch = t->target_stretch;
     def.optimize.target_angle = t->target_angle;
-    def.optimize.protect = SL_PROTECT_NONE;
-    def.segment.symmetry = SL_SYMMETRY_USE_OFF;
+    if (target != DEFAULT) {
+        def.optimize.protect = SL_PROTECT_NONE;
+        def.optimize.weights = sl_seam_cost_none();
+        def.segment.symmetry = SL_SYMMETRY_USE_OFF;
+    }
     const double start = cpu_seconds();
     SL_TRY(sl_unwrap(polygons, &def, NULL, &atlas, NULL));
     const double seconds = cpu_seconds() - start;
@@ -145,6 +155,13 @@ static sl_status run(const sl_polygons *polygons, const task *t, int mesh, int t
            t->l2, t->angle, m.charts / t->charts, m.seam_length / t->seam, seconds, m.fill,
            atlas->check.passed ? "proven" : "NOT PROVEN", m.global.l2 > t->target_stretch + 1e-4 ? " L2 MISSED" : "",
            m.global.angle_mean > t->target_angle + 1e-3 ? " ANGLE MISSED" : "");
+    double rest = seconds;
+    printf("    seconds:");
+    for (int k = 0; k < SL_OPTIMIZE_STAGES; k++) {
+        printf(" %s %.2f", STAGE[k], atlas->optimized.seconds[k]);
+        rest -= atlas->optimized.seconds[k];
+    }
+    printf(" repair, pack, check %.2f\n", rest);
     fflush(stdout);
 cleanup:
     sl_atlas_free(atlas);
