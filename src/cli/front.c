@@ -2,6 +2,7 @@
 #include "atlas/atlas.h"
 #include "atlas/measure.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/segment_options.h"
@@ -58,9 +59,17 @@ static sl_status reach(cli_run *run, const sl_polygons *polygons, sl_atlas_def *
     sl_status status = SL_OK;
     sl_atlas *atlas = NULL;
     sl_atlas_measure measure;
+    sl_sharing_table table = {0};
     def->optimize.target_stretch = target;
     SL_TRY(sl_unwrap(polygons, def, &run->context, &atlas, diag));
-    SL_TRY(sl_measure_atlas(polygons, atlas->input_corner_uv, MEASURE_RESOLUTION, &run->context, &measure, diag));
+    const sl_segmentation *seg = atlas->segmentation;
+    table = (sl_sharing_table){polygons->nf, seg->nchart, seg->face_chart, sl_alloc(seg->nchart, sizeof(int32_t))};
+    SL_TRY(table.copy_of != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    for (int32_t c = 0; c < seg->nchart; c++) { /* an axis is a seam, though both its sides have the same UVs */
+        table.copy_of[c] = seg->chart[c].copy_of;
+    }
+    SL_TRY(
+        sl_measure_shared(polygons, atlas->input_corner_uv, &table, MEASURE_RESOLUTION, &run->context, &measure, diag));
     *row = (front_row){target,
                        atlas->segmentation->nchart,
                        atlas->optimized.missed,
@@ -70,6 +79,7 @@ static sl_status reach(cli_run *run, const sl_polygons *polygons, sl_atlas_def *
                        measure.fill,
                        atlas->check.passed};
 cleanup:
+    sl_free(table.copy_of);
     sl_atlas_free(atlas);
     return status;
 }

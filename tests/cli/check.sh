@@ -397,6 +397,10 @@ expect 2 "$seamlab" pack uv1.obj
 expect 2 "$seamlab" pack uv1.obj -o none.off
 expect 2 "$seamlab" pack uv1.obj -o none.obj --rotations left
 
+# --- front: an axis is a seam, though both its sides have the same UVs
+expect 0 "$seamlab" front ball/sphere.obj --targets 1.1
+! grep -q ' 0\.000 ' out.txt || complain "front does not count the axis as a seam: $(cat out.txt)"
+
 # --- unwrap onto pages: the density asked for, copies where their sources are, every page checked
 expect 0 "$seamlab" unwrap body/body.obj -o unwrapped.obj --density 14 --resolution 256 --margin 1 --pages 9 --json
 contains out.txt '"certified":true.*"pages":1,"texelsAUnit":14.0,"copies":3'
