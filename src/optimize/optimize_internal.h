@@ -26,8 +26,8 @@ SL_NODISCARD sl_status sl_opt_surface_init(const sl_mesh *mesh, const sl_triangu
                                            const double *weight, sl_opt_surface *out);
 void sl_opt_surface_clear(sl_opt_surface *surface);
 
-/* Weights of a whole mesh's edges, owned by the caller; NULL where all strengths are 0 and no pairs are wanted. Pairs
- * are those of `pairing`. Statuses of sl_seam_cost_compute. */
+/* Weights of a whole mesh's edges, their mean but for diagonals 1, owned by the caller; NULL where all strengths are 0
+ * and no pairs are wanted. Pairs are those of `pairing`. Statuses of sl_seam_cost_compute. */
 SL_NODISCARD sl_status sl_opt_weights(const sl_mesh *mesh, const sl_seam_cost_def *def, sl_pairing pairing,
                                       const sl_context *context, double **weight);
 

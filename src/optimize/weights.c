@@ -29,6 +29,24 @@ static bool is_plain(const sl_seam_cost_def *d)
     return d->crease == 0.0 && d->concavity == 0.0 && d->visibility == 0.0 && d->loops == 0.0;
 }
 
+/* Makes the mean over all edges but diagonals 1, by length: what a chart costs keeps its meaning beside the seams. */
+static void normalise(const sl_mesh *mesh, const int32_t *partner, double *weight)
+{
+    double length = 0.0, sum = 0.0;
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        const int32_t t = sl_opposite(mesh, h);
+        const bool diagonal = t >= 0 && partner != NULL && partner[mesh->face[h]] == mesh->face[t];
+        if (h < t && !diagonal) {
+            const double edge = sl_mesh_edge_length(mesh, h);
+            length += edge;
+            sum += edge * weight[h];
+        }
+    }
+    for (int32_t h = 0; h < mesh->nh && sum > 0.0; h++) {
+        weight[h] *= length / sum;
+    }
+}
+
 sl_status sl_opt_weights(const sl_mesh *mesh, const sl_seam_cost_def *def, sl_pairing pairing,
                          const sl_context *context, double **weight)
 {
@@ -44,6 +62,7 @@ sl_status sl_opt_weights(const sl_mesh *mesh, const sl_seam_cost_def *def, sl_pa
     *weight = sl_alloc(mesh->nh, sizeof **weight);
     SL_TRY(*weight == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     SL_TRY(sl_seam_cost_compute(mesh, &with, context, *weight));
+    normalise(mesh, partner, *weight);
 cleanup:
     sl_free(partner);
     if (status != SL_OK) {

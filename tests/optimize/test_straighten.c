@@ -212,6 +212,25 @@ static void pairs_keep_seams_off_their_diagonals(void **state)
     sl_mesh_free(mesh);
 }
 
+static void weights_are_one_in_the_mean(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x3ea9);
+    sl_mesh *mesh = test_spiky_mesh(&rng, 7, 5, 1.0, TEST_MIXED);
+    const sl_seam_cost_def def = sl_seam_cost_default();
+    double *weight = NULL, sum = 0.0, length = 0.0, least = HUGE_VAL;
+    assert_int_equal(sl_opt_weights(mesh, &def, SL_PAIR_OFF, NULL, &weight), SL_OK);
+    for (int32_t h = 0; h < mesh->nh; h++) {
+        sum += weight[h] * sl_mesh_edge_length(mesh, h);
+        length += sl_mesh_edge_length(mesh, h);
+        least = fmin(least, weight[h]);
+        assert_true(weight[h] == weight[mesh->twin[h]]);
+    }
+    assert_true(test_near_rel(sum, length, 1e-12) && least < 0.9);
+    sl_free(weight);
+    sl_mesh_free(mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -219,6 +238,7 @@ int main(void)
         cmocka_unit_test(straightening_makes_seams_cheaper_and_keeps_charts_and_targets),
         cmocka_unit_test(seams_of_a_box_run_on_its_edges),
         cmocka_unit_test(weights_out_of_range_are_refused),
+        cmocka_unit_test(weights_are_one_in_the_mean),
         cmocka_unit_test(pairs_keep_seams_off_their_diagonals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
