@@ -227,9 +227,11 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
         exp_claims_measure(claims, r[k].model, "microseconds a facet", 1e6 * r[k].seconds / r[k].facets);
     }
     exp_page_html(page, "<div class=\"plot\">\n");
-    exp_page_figure(page, "", "timing.svg", "CPU time and memory over facets, and the share of each stage",
-                    "Left: CPU seconds on one thread, and the line of the paper's 4 min 30. Middle: peak memory. "
-                    "Right: shares of the stages, all sizes of a model together.");
+    exp_page_figure(
+        page, "", "timing.svg", "CPU time and memory over facets, and the share of each stage",
+        "Left: CPU seconds on one thread, and the line of the paper's 4 min 30. Middle: peak memory. "
+        "Right: shares of the stages, all sizes of a model together; the rest is what lies between two reports "
+        "of progress that name none of them: building the mesh, tracing and smoothing cuts, checking.");
     exp_page_html(page, "</div>\n");
     table(page, r, count);
     SL_TRY(write_csv(run, r, count));
