@@ -7,7 +7,7 @@
 #include "support/main.h"
 
 enum { PAPER, NONE, AXIS, FIRST, VARIANTS, SAME_L2 = VARIANTS, RUNS };
-enum { START, SEARCH, PACK, CHECK, STAGES };
+enum { PACK = SL_OPTIMIZE_STAGES, CHECK, REST, STAGES };
 
 extern const char *const variant_key[RUNS], *const variant_name[RUNS], *const stage_name[STAGES];
 

@@ -10,37 +10,21 @@ enum { RESOLUTION = 1024 };
 const char *const variant_key[RUNS] = {"paper", "none", "axis", "first", "same"};
 const char *const variant_name[RUNS] = {"paper", "best, nothing protected", "best, axis protected",
                                         "best, axis and first cut protected", "best, at the paper's L2"};
-const char *const stage_name[STAGES] = {"start", "search", "packing", "check"};
+const char *const stage_name[STAGES] = {"start",      "guesses", "cuts",  "balance", "sewing",
+                                        "straighten", "packing", "check", "rest"};
 
-/* Time since the last report belongs to what was reported last. */
+/* When the packing began. */
 typedef struct stopwatch {
-    double spent[STAGES], last;
-    int stage;
+    double packing;
 } stopwatch;
-
-static void take_time(stopwatch *watch, int next)
-{
-    const double now = exp_cpu_seconds();
-    watch->spent[watch->stage] += now - watch->last;
-    watch->last = now;
-    watch->stage = next;
-}
-
-/* What the library calls its steps where another stage begins. */
-static const struct {
-    const char *name;
-    int stage;
-} beginnings[] = {{"segment", START}, {"optimise", SEARCH}, {"packing", PACK}};
 
 static bool on_step(void *user, const char *stage, double fraction)
 {
     stopwatch *watch = user;
-    int next = watch->stage;
     (void)fraction;
-    for (size_t k = 0; k < SL_COUNTOF(beginnings); k++) {
-        next = strcmp(stage, beginnings[k].name) == 0 ? beginnings[k].stage : next;
+    if (watch->packing <= 0.0 && strcmp(stage, "packing") == 0) {
+        watch->packing = exp_cpu_seconds();
     }
-    take_time(watch, next);
     return true;
 }
 
@@ -121,26 +105,39 @@ cleanup:
     return status;
 }
 
+/* The search tells its own stages; the rest is building the mesh, symmetry, and the paper's cuts where there is no
+ * search.
+ */
+static void take_stages(const sl_optimize_info *info, atlas_row *row)
+{
+    row->stage[REST] = row->seconds - row->stage[PACK] - row->stage[CHECK];
+    for (int s = 0; s < SL_OPTIMIZE_STAGES; s++) {
+        row->stage[s] = info->seconds[s];
+        row->stage[REST] -= info->seconds[s];
+    }
+    row->stage[REST] = fmax(row->stage[REST], 0.0);
+}
+
 sl_status make_atlas(exp_run *run, const exp_mesh *mesh, const sl_atlas_def *def, sl_atlas **atlas, atlas_row *row)
 {
-    stopwatch watch = {.last = exp_cpu_seconds(), .stage = START};
-    const double start = watch.last;
+    stopwatch watch = {0};
+    const double start = exp_cpu_seconds();
     sl_context context = run->context;
     context.progress = on_step;
     context.progress_user = &watch;
     *row = (atlas_row){.facets = mesh->polygons.nf, .axis = NAN};
     *atlas = NULL;
     sl_status status = sl_unwrap(&mesh->polygons, def, &context, atlas, NULL);
+    const double end = exp_cpu_seconds();
     if (status != SL_OK) {
         return status == SL_OUT_OF_MEMORY ? status : SL_OK;
     }
-    take_time(&watch, CHECK);
-    row->seconds = watch.last - start;
     SL_TRY(sl_atlas_settle(*atlas, def, &run->context)); /* once more, to see what of the packing's time it takes */
-    take_time(&watch, CHECK);
-    watch.spent[PACK] = fmax(watch.spent[PACK] - watch.spent[CHECK], 0.0);
+    row->seconds = end - start;
+    row->stage[CHECK] = exp_cpu_seconds() - end;
+    row->stage[PACK] = watch.packing > 0.0 ? fmax(end - watch.packing - row->stage[CHECK], 0.0) : 0.0;
+    take_stages(&(*atlas)->optimized, row);
     SL_TRY(measure_atlas(run, mesh, *atlas, row));
-    memcpy(row->stage, watch.spent, sizeof row->stage);
     row->made = true;
 cleanup:
     return status;

@@ -27,6 +27,7 @@ set style histogram rowstacked
 set style fill solid 0.85 noborder
 set boxwidth 0.65
 set xtics rotate by 40 right
-shades = "#8a5fb5 #1a7f4b #e0a030 #b3261e"
-plot for [s = 4:7] 'timings.csv' skip 1 every 5::2 using s:xtic(1) lc rgb word(shades, s - 3) \
-    title word("start search packing check", s - 3)
+set key outside right center vertical invert
+shades = "#8a5fb5 #9fd0b4 #1a7f4b #2f6fb5 #86b4e0 #7a4a1e #e0a030 #b3261e #9aa3ad"
+stages = "start guesses cuts balance sewing straighten packing check rest"
+plot for [s = 4:12] 'timings.csv' skip 1 every 5::2 using s:xtic(1) lc rgb word(shades, s - 3) title word(stages, s - 3)
