@@ -4,7 +4,8 @@
  *     twice at 4096^2 (measure, chart by chart); the worst chart within the stretch asked for, or named by a warning;
  *     the same bytes for every number of threads given, UVs and sidecar, and again as read back from the file
  *
- *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [--symmetry off|auto|both] [FOLDER|FILE ...]
+ *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [--symmetry off|auto|both] [--preset default|best]
+ *                   [FOLDER|FILE ...]
  *
  * Every mesh twice (--symmetry both, the default): without sharing, no overlap at all; with what symmetry allows, none
  * that the sidecar, as read back, does not declare.
@@ -30,7 +31,7 @@ enum { MAX_THREAD_COUNTS = 8, MAX_MESHES = 512, OVERLAP_RESOLUTION = 4096 };
 
 typedef struct corpus_options {
     int32_t threads[MAX_THREAD_COUNTS], thread_counts, runs;
-    bool off, automatic;
+    bool off, automatic, best;
     char scratch[512];
 } corpus_options;
 
@@ -147,6 +148,7 @@ static bool unwrap_once(const corpus_options *o, const sl_polygons *polygons, sl
     sl_atlas_measure m = {0};
     bool good = false;
     def.segment.symmetry = symmetry;
+    def.best = o->best;
     if (sl_thread_pool_create(threads, &pool) != SL_OK) {
         return bad(why, size, "no threads");
     }
@@ -317,6 +319,8 @@ int main(int argc, char **argv)
             parse_threads(&o, argv[++a]);
         } else if (strcmp(argv[a], "--runs") == 0 && a + 1 < argc) {
             o.runs = atoi(argv[++a]);
+        } else if (strcmp(argv[a], "--preset") == 0 && a + 1 < argc) {
+            o.best = strcmp(argv[++a], "best") == 0;
         } else if (strcmp(argv[a], "--symmetry") == 0 && a + 1 < argc) {
             o.off = strcmp(argv[++a], "auto") != 0;
             o.automatic = strcmp(argv[a], "off") != 0;
@@ -330,7 +334,8 @@ int main(int argc, char **argv)
         failed += !good;
     }
     for (int a = 1; a < argc; a++) {
-        if (strcmp(argv[a], "--threads") == 0 || strcmp(argv[a], "--runs") == 0 || strcmp(argv[a], "--symmetry") == 0) {
+        if (strcmp(argv[a], "--threads") == 0 || strcmp(argv[a], "--runs") == 0 || strcmp(argv[a], "--symmetry") == 0 ||
+            strcmp(argv[a], "--preset") == 0) {
             a++;
             continue;
         }
