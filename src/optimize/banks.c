@@ -161,17 +161,40 @@ static void smooth(closing *c, const double *uv)
     }
 }
 
-/* As many rings as the widest gap asks for, by the mean length of the edges on them. */
+/* As many rings as the widest gap asks for, by the size of the triangles at the window. */
 static int32_t count_rings(const closing *c)
 {
     double area = 0.0;
+    int32_t count = 0;
     for (int32_t t = 0; t < c->patch->nt; t++) {
+        const int32_t *v = c->patch->tri + 3 * t;
         const double *a = c->corner + 6 * (int64_t)t;
-        area += 0.5 * fabs((a[2] - a[0]) * (a[5] - a[1]) - (a[3] - a[1]) * (a[4] - a[0]));
+        if (c->ring[v[0]] == 0 || c->ring[v[1]] == 0 || c->ring[v[2]] == 0) {
+            area += 0.5 * fabs((a[2] - a[0]) * (a[5] - a[1]) - (a[3] - a[1]) * (a[4] - a[0]));
+            count++;
+        }
     }
-    const double edge = sqrt(2.0 * area / c->patch->nt);
+    const double edge = count > 0 ? sqrt(2.0 * area / count) : 0.0;
     const double rings = edge > 0.0 ? REACH * c->gap / edge : 0.0;
     return (int32_t)fmin(fmax(ceil(rings), FEWEST_RINGS), MOST_RINGS);
+}
+
+/* Triangles that are not positive, with the shifts behind the banks or without. */
+static int32_t count_flips(const closing *c, const double *uv, bool shifted)
+{
+    int32_t flips = 0;
+    for (int32_t t = 0; t < c->patch->nt; t++) {
+        double x[3][2];
+        for (int k = 0; k < 3; k++) {
+            const int32_t v = c->patch->tri[3 * t + k];
+            const double share = shifted && c->ring[v] > 0 ? 1.0 : 0.0;
+            for (int j = 0; j < 2; j++) {
+                x[k][j] = uv[2 * (int64_t)v + j] + share * c->shift[2 * (int64_t)v + j];
+            }
+        }
+        flips += !((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]) > 0.0);
+    }
+    return flips;
 }
 
 sl_status sl_opt_close_banks(const sl_opt_state *state, const sl_opt_trial *trial, const sl_patch *patch, double *uv)
@@ -195,7 +218,8 @@ sl_status sl_opt_close_banks(const sl_opt_state *state, const sl_opt_trial *tria
         for (int k = 0; k < SWEEPS; k++) {
             smooth(&c, uv);
         }
-        for (int32_t v = 0; v < patch->nv; v++) {
+        const bool follows = count_flips(&c, uv, true) < count_flips(&c, uv, false);
+        for (int32_t v = 0; v < patch->nv && follows; v++) {
             if (c.ring[v] > 0) {
                 uv[2 * (int64_t)v] += c.shift[2 * (int64_t)v];
                 uv[2 * (int64_t)v + 1] += c.shift[2 * (int64_t)v + 1];

@@ -51,6 +51,65 @@ static void banks_that_lie_together_stay_where_they_are(void **unused)
     }
 }
 
+<<<<<<< HEAD
+/* A dart that has opened is closed again: no vertex goes further than its banks are apart, what is far away stays, and
+ * hardly a triangle flips, though the banks alone would turn many over. */
+static void what_lies_behind_the_banks_follows_them(void **unused)
+{
+    (void)unused;
+    test_rng rng = test_rng_seed(0xc105e);
+    const sl_optimize_def def = sl_optimize_default();
+    int32_t flips = 0, alone = 0, still = 0;
+    for (int round = 0; round < 6 * test_multiplier(); round++) {
+        test_surface s = test_surface_of(test_spiky_mesh(&rng, 12, 4, 0.6, TEST_TRIANGLES));
+        sl_opt_state state = started(&s, &def);
+        sl_opt_trial *list = NULL;
+        int32_t count = 0;
+        assert_int_equal(sl_opt_candidates(&state, 0, &list, &count), SL_OK);
+        sl_opt_trial sew = {.sew = true, .old = {0, -1}, .nedge = list[0].nedge};
+        sew.edge = sl_copy(list[0].edge, list[0].nedge, sizeof *sew.edge);
+        assert_int_equal(sl_opt_trial_make(&state, &list[0]), SL_OK);
+        assert_int_equal(sl_opt_trial_probe(&state, 2, &list[0]), SL_OK);
+        assert_int_equal(sl_opt_apply(&state, &list[0]), SL_OK);
+        assert_int_equal(sl_opt_trial_make(&state, &sew), SL_OK);
+        const sl_patch *p = sew.to[0].patch;
+        double *mean = sl_calloc(3 * (int64_t)p->nv, sizeof *mean), widest = 0.0;
+        for (int32_t c = 0; c < 3 * p->nt; c++) {
+            const double *uv = state.uv + 2 * p->corner[c], *first = state.uv + 2 * p->corner[p->outgoing[p->tri[c]]];
+            widest = fmax(widest, hypot(uv[0] - first[0], uv[1] - first[1]));
+            mean[3 * p->tri[c]] += uv[0];
+            mean[3 * p->tri[c] + 1] += uv[1];
+            mean[3 * p->tri[c] + 2] += 1.0;
+        }
+        for (int32_t v = 0; v < p->nv; v++) {
+            const double *uv = sew.to[0].uv + 2 * v, n = mean[3 * v + 2];
+            mean[2 * v] = mean[3 * v] / n; /* in place: 2 v + 1 <= 3 v + 1 */
+            mean[2 * v + 1] = mean[3 * v + 1] / n;
+            const double moved = hypot(uv[0] - mean[2 * v], uv[1] - mean[2 * v + 1]);
+            assert_true(moved <= widest);
+            still += moved < 1e-14;
+        }
+        for (int32_t t = 0; t < p->nt; t++) {
+            const int32_t *v = p->tri + 3 * t;
+            const double *uv = sew.to[0].uv;
+            flips += sl_orient2d(uv + 2 * v[0], uv + 2 * v[1], uv + 2 * v[2]) <= 0;
+            alone += sl_orient2d(mean + 2 * v[0], mean + 2 * v[1], mean + 2 * v[2]) <= 0;
+        }
+        sl_free(mean);
+        sl_opt_trial_clear(&sew);
+        for (int32_t k = 0; k < count; k++) {
+            sl_opt_trial_clear(&list[k]);
+        }
+        sl_free(list);
+        sl_opt_state_clear(&state);
+        test_surface_clear(&s);
+    }
+    print_message("flips %d, of the banks alone %d, still %d\n", flips, alone, still);
+    assert_true(flips <= alone && alone > 0 && still > 0);
+}
+
+=======
+>>>>>>> origin/HEAD
 /* How often the border of a chart winds around x. */
 static double winding(const sl_opt_chart *chart, const double x[2])
 {
@@ -181,6 +240,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(banks_that_lie_together_stay_where_they_are),
+<<<<<<< HEAD
+        cmocka_unit_test(what_lies_behind_the_banks_follows_them),
+=======
+>>>>>>> origin/HEAD
         cmocka_unit_test(charts_interlock_where_one_reaches_deep_into_the_other),
         cmocka_unit_test(guesses_agree_with_probes_of_the_whole_chart),
     };
