@@ -104,7 +104,6 @@ static void what_lies_behind_the_banks_follows_them(void **unused)
         sl_opt_state_clear(&state);
         test_surface_clear(&s);
     }
-    print_message("flips %d, of the banks alone %d, still %d\n", flips, alone, still);
     assert_true(flips <= alone && alone > 0 && still > 0);
 }
 
