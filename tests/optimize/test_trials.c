@@ -51,7 +51,6 @@ static void banks_that_lie_together_stay_where_they_are(void **unused)
     }
 }
 
-<<<<<<< HEAD
 /* A dart that has opened is closed again: no vertex goes further than its banks are apart, what is far away stays, and
  * hardly a triangle flips, though the banks alone would turn many over. */
 static void what_lies_behind_the_banks_follows_them(void **unused)
@@ -107,8 +106,6 @@ static void what_lies_behind_the_banks_follows_them(void **unused)
     assert_true(flips <= alone && alone > 0 && still > 0);
 }
 
-=======
->>>>>>> origin/HEAD
 /* How often the border of a chart winds around x. */
 static double winding(const sl_opt_chart *chart, const double x[2])
 {
@@ -239,10 +236,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(banks_that_lie_together_stay_where_they_are),
-<<<<<<< HEAD
         cmocka_unit_test(what_lies_behind_the_banks_follows_them),
-=======
->>>>>>> origin/HEAD
         cmocka_unit_test(charts_interlock_where_one_reaches_deep_into_the_other),
         cmocka_unit_test(guesses_agree_with_probes_of_the_whole_chart),
     };
