@@ -225,7 +225,7 @@ int cli_front(int argc, char **argv)
         {"targets", 0, CLI_TEXT, &targets, 0, 0, NULL, "LIST", "L2 stretches, falling (1.2,1.1,1.05,1.02,1.01,1.005)"},
         {"output", 'o', CLI_TEXT, &plot, 0, 0, NULL, "PLOT.svg", "a plot of the front"},
     };
-    cli_segment_preset(&segment, argc, argv);
+    cli_segment_preset(&segment, CLI_PRESET_BEST, argc, argv);
     cli_segment_table(&segment, options + OWN);
     cli_common_options(&run, options + OWN + CLI_SEGMENT_OPTIONS);
     int code = cli_parse(&verb, options, ALL, argc, argv, 2, files, &file_count);

@@ -185,7 +185,7 @@ int cli_segment(int argc, char **argv)
         {"animate", 0, CLI_TEXT, &out.animation, 0, 0, NULL, "OUT.png", "an animated PNG: split by split"},
     };
     cli_option options[ALL];
-    cli_segment_preset(&segment, argc, argv);
+    cli_segment_preset(&segment, CLI_PRESET_FAST, argc, argv);
     memcpy(options, own, sizeof own);
     cli_segment_table(&segment, options + OWN);
     cli_common_options(&run, options + OWN + CLI_SEGMENT_OPTIONS);

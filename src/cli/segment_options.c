@@ -13,18 +13,18 @@ static void load_def(cli_segment_options *o, sl_segment_def def)
     o->energy = (int32_t)def.flatten.abf.energy;
 }
 
-void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
+void cli_segment_preset(cli_segment_options *o, cli_preset usual, int argc, char **argv)
 {
     load_def(o, sl_segment_default());
     o->optimize = sl_optimize_default();
     o->weights = true;
     o->protect = (int32_t)o->optimize.protect;
-    o->preset = 0;
+    o->preset = usual;
     for (int a = 2; a < argc; a++) {
         const bool next = strcmp(argv[a], "--preset") == 0 && a + 1 < argc && strcmp(argv[a + 1], "paper") == 0;
         if (next || strcmp(argv[a], "--preset=paper") == 0) {
             load_def(o, sl_segment_paper());
-            o->preset = 1;
+            o->preset = CLI_PRESET_PAPER;
         }
     }
 }
@@ -32,8 +32,9 @@ void cli_segment_preset(cli_segment_options *o, int argc, char **argv)
 void cli_segment_table(cli_segment_options *o, cli_option *table)
 {
     const cli_option entries[CLI_SEGMENT_OPTIONS] = {
-        {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "default|paper|best", NULL,
-         "paper = as printed, best = fewest charts and shortest seams by search; other options override"},
+        {"preset", 0, CLI_CHOICE, &o->preset, 0, 0, "best|fast|paper", NULL,
+         "best = fewest charts and shortest seams by search (unwrap), fast = the recursion alone (segment), paper = as "
+         "printed; other options override"},
         {"target-stretch", 0, CLI_REAL, &o->optimize.target_stretch, 1.0, 1e6, NULL, "L2",
          "best: of the whole atlas (1.05)"},
         {"target-angle", 0, CLI_REAL, &o->optimize.target_angle, 1.0, 1e6, NULL, "R",
@@ -101,7 +102,7 @@ void cli_segment_apply(cli_segment_options *o)
     o->def.rule = (sl_cut_rule)o->rule;
     o->def.pairing = (sl_pairing)o->pairing;
     o->def.flatten.abf.energy = (sl_abf_energy)o->energy;
-    o->best = o->preset == 2;
+    o->best = o->preset == CLI_PRESET_BEST;
     o->optimize.protect = (sl_protect)o->protect;
     o->optimize.weights = o->weights ? o->optimize.weights : sl_seam_cost_none();
     o->optimize.max_stretch = o->def.flatten.max_stretch;

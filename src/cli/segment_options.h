@@ -6,6 +6,8 @@
 #include "cli/options.h"
 #include "optimize/optimize.h"
 
+typedef enum cli_preset { CLI_PRESET_BEST, CLI_PRESET_FAST, CLI_PRESET_PAPER } cli_preset; /* as in the option's text */
+
 typedef struct cli_segment_options {
     sl_segment_def def;
     sl_optimize_def optimize;
@@ -16,8 +18,9 @@ typedef struct cli_segment_options {
 
 #define CLI_SEGMENT_OPTIONS 36
 
-/* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands. */
-void cli_segment_preset(cli_segment_options *o, int argc, char **argv);
+/* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands; usual =
+ * the verb's own where there is none. */
+void cli_segment_preset(cli_segment_options *o, cli_preset usual, int argc, char **argv);
 
 /* Fills CLI_SEGMENT_OPTIONS entries. */
 void cli_segment_table(cli_segment_options *o, cli_option *table);

@@ -20,7 +20,7 @@ static const cli_verb verb = {
     .examples = "  seamlab unwrap model.obj -o model-uv.obj\n"
                 "  seamlab unwrap model.ply -o model-uv.ply --preview pictures --max-stretch 1.2\n"
                 "  seamlab unwrap model.obj -o paper.obj --preset paper\n"
-                "  seamlab unwrap model.obj -o best.obj --preset best --target-stretch 1.02\n"
+                "  seamlab unwrap model.obj -o finer.obj --target-stretch 1.02\n"
                 "  seamlab unwrap model.obj -o mine.obj --seams edges.csv\n"
                 "  seamlab unwrap model.obj -o own.obj --symmetry off\n"
                 "  seamlab unwrap model.obj -o tiles.obj --density 512 --pages 100\n",
@@ -212,7 +212,7 @@ int cli_unwrap(int argc, char **argv)
     cli_option options[ALL_OPTIONS];
     const char *files[1];
     int32_t file_count = 0, *owned = NULL;
-    cli_segment_preset(&o.segment, argc, argv);
+    cli_segment_preset(&o.segment, CLI_PRESET_BEST, argc, argv);
     option_table(&o, options);
     int code = cli_parse(&verb, options, ALL_OPTIONS, argc, argv, 2, files, &file_count);
     if (code >= 0 || (code = check_options(&o)) >= 0 || (code = cli_begin(&o.run)) >= 0) {

@@ -279,12 +279,11 @@ static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
             }
         } else if (p->trial[best].settled) {
             *taken = best;
-            continue;
-        }
-        /* it may be worth less than the probe promised, or overlap: then others come first */
-        SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
-        if (!(score(state, &p->trial[best], wanted) > 0.0)) {
-            SL_TRY(add_parting(state, p->trial[best].old[0], p));
+        } else { /* it may be worth less than the probe promised, or overlap: then others come first */
+            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
+            if (!(score(state, &p->trial[best], wanted) > 0.0)) {
+                SL_TRY(add_parting(state, p->trial[best].old[0], p));
+            }
         }
     }
 cleanup:
@@ -315,6 +314,9 @@ static sl_status bisect_stuck(sl_opt_state *state, pool *p, int64_t *taken)
         sl_opt_trial *trial = &p->trial[k];
         if (trial->old[0] != worst || trial->nto < 2 || !trial->valid) {
             continue;
+        }
+        if (!trial->probed) { /* only guessed at: its charts are not made yet */
+            SL_TRY(run_trials(state, &trial, 1, probe_range));
         }
         if (!trial->settled) {
             SL_TRY(sl_opt_trial_settle(state, trial));

@@ -147,17 +147,17 @@ SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
 
 /* How a chart is solved. */
 typedef enum sl_opt_effort {
-    SL_OPT_WARM,      /* from the map at hand; from nothing where that fails */
-    SL_OPT_WARM_ONLY, /* from the map at hand or not at all */
+    SL_OPT_WARM,      /* from the map at hand; as COLD where that overlaps */
+    SL_OPT_HELD,      /* the same for a map that is embedded: the border may be held by where it touches, too */
+    SL_OPT_WARM_ONLY, /* from the map at hand, with a border that is held if need be, or not at all */
     SL_OPT_COLD,      /* from nothing; once more with a simple border where that overlaps */
     SL_OPT_GUESSED,   /* the same, from about where the vertices will be: the map at hand may have flips */
     SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */
 } sl_opt_effort;
 
-/* Solves a chart. uv: in and out; a map at hand must be flip-free. origin: an embedded map but for banks that touch,
- * from which a solve that keeps the border simple may start; NULL: that is uv. *embedded = proven. */
-SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort,
-                                    const double *origin, double *uv, bool *embedded);
+/* Solves a chart. uv: in and out; a map at hand must be flip-free. *embedded = proven. */
+SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
+                                    bool *embedded);
 
 /* Solves a chart roughly, from the map at hand or where that has flips from nothing. workspace: for sl_opt_finish. */
 SL_NODISCARD sl_status sl_opt_sketch(const sl_opt_state *state, sl_opt_chart *chart, sl_stretch_workspace *workspace,

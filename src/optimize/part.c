@@ -318,7 +318,7 @@ static sl_status part_round(const sl_opt_state *state, sl_opt_trial *trial, bool
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
         sl_opt_chart *chart = &trial->to[k];
         bool embedded;
-        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_SEWN, NULL, chart->uv, &embedded));
+        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_SEWN, chart->uv, &embedded));
         if (!embedded) {
             trial->settled = false;
             SL_TRY(part_chart(state->surface, chart, trial));

@@ -103,8 +103,9 @@ cleanup:
 }
 
 /* From the map at hand. Where that ends in an overlap: with `anew` from nothing, since that may come to lie otherwise;
- * only then with a border that must stay simple, which is held by where it touches. */
-static sl_status solve_warm(attempt *a, bool anew, double *uv, bool *embedded)
+ * with `held` from the map in start with a border that must stay simple, which stops where it touches; last, from
+ * nothing with such a border. */
+static sl_status solve_warm(attempt *a, bool anew, bool held, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
     bool solved = false;
@@ -116,7 +117,7 @@ static sl_status solve_warm(attempt *a, bool anew, double *uv, bool *embedded)
     if (!*embedded && anew) {
         SL_TRY(solve_from_nothing(a, false, uv, embedded));
     }
-    if (!*embedded && solved) {
+    if (!*embedded && held && solved) {
         SL_TRY(solve_opened(a, uv, embedded));
     }
     if (!*embedded && anew) {
@@ -154,8 +155,8 @@ sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate
     return status;
 }
 
-sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, const double *origin,
-                       double *uv, bool *embedded)
+sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
+                       bool *embedded)
 {
     sl_status status = SL_OK;
     attempt a = {.patch = patch, .def = stretch_def(state)};
@@ -167,13 +168,16 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_
     a.work = sl_alloc(patch->nv, sizeof *a.work);
     SL_TRY(a.start == NULL || a.work == NULL ? SL_OUT_OF_MEMORY : SL_OK);
     SL_TRY(list_border(patch, &a.nb, &a.border));
-    memcpy(a.start, origin != NULL ? origin : uv, 2 * (size_t)patch->nv * sizeof *uv);
+    memcpy(a.start, uv, 2 * (size_t)patch->nv * sizeof *uv);
     switch (effort) {
     case SL_OPT_WARM:
-        SL_TRY(solve_warm(&a, true, uv, embedded));
+        SL_TRY(solve_warm(&a, true, false, uv, embedded));
+        break;
+    case SL_OPT_HELD:
+        SL_TRY(solve_warm(&a, true, true, uv, embedded));
         break;
     case SL_OPT_WARM_ONLY:
-        SL_TRY(solve_warm(&a, false, uv, embedded));
+        SL_TRY(solve_warm(&a, false, true, uv, embedded));
         break;
     case SL_OPT_GUESSED:
         a.def.guess = a.start;
@@ -252,9 +256,8 @@ static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t c = begin; c < end; c++) {
         const sl_opt_chart *chart = &r->state->chart[c];
         r->uv[c] = sl_copy(chart->uv, 2 * (int64_t)chart->patch->nv, sizeof **r->uv);
-        r->status[c] = r->uv[c] == NULL
-                           ? SL_OUT_OF_MEMORY
-                           : sl_opt_solve(r->state, chart->patch, r->effort, NULL, r->uv[c], &r->embedded[c]);
+        r->status[c] = r->uv[c] == NULL ? SL_OUT_OF_MEMORY
+                                        : sl_opt_solve(r->state, chart->patch, r->effort, r->uv[c], &r->embedded[c]);
         if (r->status[c] == SL_OK && r->embedded[c]) {
             sl_opt_measure(r->state->surface, chart->patch, r->uv[c], &r->sums[c], NULL);
         }
@@ -317,7 +320,7 @@ cleanup:
 sl_status sl_opt_resolve(sl_opt_state *state)
 {
     bool all;
-    return resolve(state, SL_OPT_WARM, false, &all);
+    return resolve(state, SL_OPT_HELD, false, &all);
 }
 
 sl_status sl_opt_unfold(sl_opt_state *state, bool guessed, bool *all)
@@ -379,7 +382,7 @@ sl_status sl_opt_balance(sl_opt_state *state)
         } else {
             state->w = next_weight(w, f, w0, f0, low, high);
         }
-        SL_TRY(resolve(state, SL_OPT_WARM, true, &all));
+        SL_TRY(resolve(state, SL_OPT_HELD, true, &all));
         if (all) {
             w0 = w;
             f0 = f;

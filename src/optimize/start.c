@@ -82,7 +82,7 @@ static sl_status solve_charts(sl_opt_state *state, const sl_segmentation *seg, b
             memcpy(chart->uv + 2 * (int64_t)chart->patch->tri[k], seg->corner_uv + 2 * (int64_t)h,
                    2 * sizeof *chart->uv);
         }
-        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_WARM, NULL, chart->uv, started));
+        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_HELD, chart->uv, started));
         sl_opt_measure(state->surface, chart->patch, chart->uv, &chart->sums, NULL);
         for (int32_t k = 0; k < 3 * chart->patch->nt; k++) {
             memcpy(state->uv + 2 * (int64_t)chart->patch->corner[k], chart->uv + 2 * (int64_t)chart->patch->tri[k],

@@ -325,10 +325,10 @@ static sl_status solve_chart(const sl_opt_state *state, const region *r, int32_t
     *embedded = false;
     SL_TRY(lay_chart(state, r, chart, &laid));
     if (laid) {
-        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_WARM_ONLY, NULL, chart->uv, embedded));
+        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_WARM_ONLY, chart->uv, embedded));
     } else if (*cold > 0) {
         (*cold)--;
-        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_COLD, NULL, chart->uv, embedded));
+        SL_TRY(sl_opt_solve(state, chart->patch, SL_OPT_COLD, chart->uv, embedded));
     }
     sl_opt_measure(state->surface, chart->patch, chart->uv, &chart->sums, NULL);
 cleanup:

@@ -176,26 +176,7 @@ static sl_status drop_crossing(sl_opt_trial *trial)
     }
     const sl_status status = sl_opt_certify(trial->to[0].patch, trial->to[0].uv, &certificate);
     trial->dropped = certificate.border_crossings > 0 && certificate.flipped + certificate.degenerate == 0;
-
-    return status;
-}
-
-/* The map that the chart's corners have now: a probe has moved the trial's own on, perhaps over itself. */
-static double *map_before(const sl_opt_state *state, const sl_patch *p)
-{
-    double *uv = sl_alloc(2 * (int64_t)p->nv, sizeof *uv);
-    for (int32_t c = 0; uv != NULL && c < 3 * p->nt; c++) {
-        memcpy(uv + 2 * (int64_t)p->tri[c], state->uv + 2 * (int64_t)p->corner[c], 2 * sizeof *uv);
-    }
-    return uv;
-}
-
-static sl_status settle_cut(const sl_opt_state *state, sl_opt_chart *chart, bool *embedded)
-{
-    double *origin = map_before(state, chart->patch);
-    const sl_status status =
-        origin == NULL ? SL_OUT_OF_MEMORY : sl_opt_solve(state, chart->patch, SL_OPT_WARM, origin, chart->uv, embedded);
-    sl_free(origin);
+    trial->valid = !trial->dropped;
     return status;
 }
 
@@ -203,7 +184,7 @@ sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        SL_TRY(settle_cut(state, &trial->to[k], &trial->valid));
+        SL_TRY(sl_opt_solve(state, trial->to[k].patch, SL_OPT_WARM, trial->to[k].uv, &trial->valid));
     }
     trial->settled = trial->valid;
     if (trial->valid) {

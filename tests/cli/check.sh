@@ -257,7 +257,7 @@ contains err.txt 'there is no chart'
 
 # --- warnings, --strict, and a cap that leaves nothing to deliver
 expect 0 "$seamlab" demo sphere -o ball --quiet
-few='--max-charts 2 --max-stretch 1.01 --sew off --minimise off --symmetry off'
+few='--max-charts 2 --max-stretch 1.01 --preset fast --sew off --minimise off --symmetry off'
 expect 0 "$seamlab" unwrap ball/sphere.obj -o capped.obj $few
 contains err.txt 'warning: chart'
 contains capped.atlas.json 'above the bound'
@@ -281,7 +281,7 @@ expect 0 "$seamlab" measure shared1.obj
 contains out.txt 'flipped 0 .*overlap inside 0.00000, across 0.00000'
 contains out.txt 'charts are copies'
 expect 0 "$seamlab" check shared1.obj
-contains out.txt 'by its sidecar .* 3 of them copies'
+contains out.txt 'by its sidecar .* 1 of them copies'
 cp shared1.obj orphan.obj
 expect 0 "$seamlab" measure orphan.obj --json
 contains out.txt '"copies":0'
@@ -402,11 +402,11 @@ expect 0 "$seamlab" front ball/sphere.obj --targets 1.1
 ! grep -q ' 0\.000 ' out.txt || complain "front does not count the axis as a seam: $(cat out.txt)"
 
 # --- unwrap onto pages: the density asked for, copies where their sources are, every page checked
-expect 0 "$seamlab" unwrap body/body.obj -o unwrapped.obj --density 14 --resolution 256 --margin 1 --pages 9 --json
+expect 0 "$seamlab" unwrap body/body.obj -o unwrapped.obj --preset fast --density 14 --resolution 256 --margin 1 --pages 9 --json
 contains out.txt '"certified":true.*"pages":1,"texelsAUnit":14.0,"copies":3'
 expect 0 "$seamlab" measure unwrapped.obj --json
 contains out.txt '"ovIn":0.0,"ovX":0.0,"copies":3,'
-expect 0 "$seamlab" unwrap ball/sphere.obj -o unwrapped.obj --symmetry off --max-stretch 1.02 --density 100 --resolution 256 --margin 1 --pages 9
+expect 0 "$seamlab" unwrap ball/sphere.obj -o unwrapped.obj --preset fast --symmetry off --max-stretch 1.02 --density 100 --resolution 256 --margin 1 --pages 9
 contains err.txt 'on 4 pages, 100 texels a unit'
 contains unwrapped.atlas.json '"page":3,'
 json unwrapped.atlas.json
@@ -647,7 +647,7 @@ json out.txt
 cmp -s edited.obj one.obj || complain "edit with another number of threads gives other bytes"
 printf '{"seamlab":"session","version":1}\n' >nothing.jsonl
 expect 0 "$seamlab" edit $mesh nothing.jsonl -o plain.obj --quiet
-expect 0 "$seamlab" unwrap $mesh -o unwrapped.obj --quiet
+expect 0 "$seamlab" unwrap $mesh -o unwrapped.obj --preset fast --quiet
 cmp -s plain.obj unwrapped.obj || complain "a session without actions gives other bytes than unwrap"
 printf '{"seamlab":"session","version":1}\n{"do":"pack"}\n\n{"do":"cut-chart"}\n' >broken.jsonl
 expect 3 "$seamlab" edit $mesh broken.jsonl -o broken.obj

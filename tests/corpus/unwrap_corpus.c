@@ -4,7 +4,7 @@
  *     twice at 4096^2 (measure, chart by chart); the worst chart within the stretch asked for, or named by a warning;
  *     the same bytes for every number of threads given, UVs and sidecar, and again as read back from the file
  *
- *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [--symmetry off|auto|both] [--preset default|best]
+ *     unwrap_corpus [--generated] [--threads 1,2] [--runs N] [--symmetry off|auto|both] [--preset fast|best]
  *                   [FOLDER|FILE ...]
  *
  * Every mesh twice (--symmetry both, the default): without sharing, no overlap at all; with what symmetry allows, none

@@ -104,7 +104,7 @@ static void a_ramp_is_parted_into_turns_that_lie_nearly_flat(void **state)
         assert_true(before.embedded);
         double *uv = sl_copy(opt.chart[0].uv, 2 * (int64_t)opt.chart[0].patch->nv, sizeof *uv);
         bool embedded;
-        assert_int_equal(sl_opt_solve(&opt, opt.chart[0].patch, SL_OPT_SEWN, NULL, uv, &embedded), SL_OK);
+        assert_int_equal(sl_opt_solve(&opt, opt.chart[0].patch, SL_OPT_SEWN, uv, &embedded), SL_OK);
         assert_int_equal(sl_opt_certify(opt.chart[0].patch, uv, &free_map), SL_OK);
         assert_true(!embedded && free_map.border_crossings > 0); /* what is to be shown at all */
         sl_free(uv);

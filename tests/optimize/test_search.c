@@ -71,6 +71,32 @@ static void every_shape_meets_its_targets_in_valid_charts(void **state)
     }
 }
 
+/* On more triangles than are probed whole. */
+static void targets_out_of_reach_leave_valid_charts(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x0f1e);
+    sl_mesh *mesh = test_spiky_mesh(&rng, 14, 4, 1.6, TEST_TRIANGLES);
+    sl_triangulation *t = test_triangulate(mesh);
+    sl_optimize_def def = sl_optimize_default();
+    sl_optimize_info info;
+    def.target_stretch = 1.0005;
+    def.target_angle = 1.002;
+    def.max_cuts = 60;
+    sl_segmentation *s = search(mesh, t, &def, 2, &info);
+    assert_int_equal(info.failed, 0);
+    test_check_partition(mesh, s);
+    for (int32_t c = 0; c < s->nchart; c++) {
+        int32_t flips = 0;
+        (void)test_chart_stretch(mesh, t, s, c, &flips);
+        assert_int_equal(flips, 0);
+        assert_int_equal(s->chart[c].flat.verdict, SL_CHART_VALID);
+    }
+    sl_segmentation_free(s);
+    sl_triangulation_free(t);
+    sl_mesh_free(mesh);
+}
+
 static void tighter_targets_cost_longer_seams(void **state)
 {
     (void)state;
@@ -266,6 +292,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_meets_its_targets_in_valid_charts),
+        cmocka_unit_test(targets_out_of_reach_leave_valid_charts),
         cmocka_unit_test(tighter_targets_cost_longer_seams),
         cmocka_unit_test(the_bytes_do_not_depend_on_the_threads),
         cmocka_unit_test(a_target_out_of_reach_is_reported),
