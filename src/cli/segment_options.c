@@ -19,7 +19,7 @@ void cli_segment_preset(cli_segment_options *o, cli_preset usual, int argc, char
     o->optimize = sl_optimize_default();
     o->weights = true;
     o->protect = (int32_t)o->optimize.protect;
-    o->preset = usual;
+    o->preset = (int32_t)usual;
     for (int a = 2; a < argc; a++) {
         const bool next = strcmp(argv[a], "--preset") == 0 && a + 1 < argc && strcmp(argv[a + 1], "paper") == 0;
         if (next || strcmp(argv[a], "--preset=paper") == 0) {

@@ -13,7 +13,9 @@ static const double LEAST_GAIN = 4e-3; /* of a whole budget: below it nothing is
 /* Of any cut, in seam length over sqrt(area): else seams are made an edge at a time. The first at these targets and
  * coarser ones, down to the last at finer ones, which short cuts reach best. */
 static const double CUT_PRICE = 0.1, COARSE_STRETCH = 1.05, COARSE_ANGLE = 1.2, LEAST_CUT_PRICE = 0.02;
-static const int BALANCE_EVERY = 3; /* cuts */
+static const double BLOCKED_FACTOR = 3.0; /* at coarse targets, of what a free cut is worth, and once more: then one
+                                           * with a held border is tried */
+static const int BALANCE_EVERY = 3;       /* cuts */
 static const double LEAST_SHARE =
     0.01;                         /* of what is missing, or of a budget: a cut that gains less is none to go on by */
 static const double WORSE = 1.01; /* times its loss, at most, that a stuck chart's halves may have */
@@ -183,11 +185,17 @@ static double need(const sl_opt_state *state)
     return loss > spare ? loss - spare : HUGE_VAL;
 }
 
+/* How coarse the targets are, at most 1. */
+static double coarseness(const sl_optimize_def *def)
+{
+    const double least =
+        fmin((def->target_stretch - 1.0) / (COARSE_STRETCH - 1.0), (def->target_angle - 1.0) / (COARSE_ANGLE - 1.0));
+    return fmin(least, 1.0);
+}
+
 static double cut_price(const sl_optimize_def *def)
 {
-    const double fineness =
-        fmin((def->target_stretch - 1.0) / (COARSE_STRETCH - 1.0), (def->target_angle - 1.0) / (COARSE_ANGLE - 1.0));
-    return fmax(CUT_PRICE * fmin(fineness, 1.0), LEAST_CUT_PRICE);
+    return fmax(CUT_PRICE * coarseness(def), LEAST_CUT_PRICE);
 }
 
 static double score(const sl_opt_state *state, const sl_opt_trial *trial, double wanted)
@@ -263,6 +271,39 @@ cleanup:
     return status;
 }
 
+/* Of the cuts that overlap when let go, the one that promised most, if that is far more than `score`; -1 = none. */
+static int64_t find_blocked(const sl_optimize_def *def, const pool *p, double score)
+{
+    int64_t best = -1;
+    double most = (1.0 + BLOCKED_FACTOR * coarseness(def)) * score;
+    for (int64_t k = 0; k < p->count; k++) {
+        if (p->trial[k].blocked && p->trial[k].promise > most) {
+            best = k;
+            most = p->trial[k].promise;
+        }
+    }
+    return best;
+}
+
+/* Solves a candidate to its end, its border held if that was needed and is worth it. */
+static sl_status settle(sl_opt_state *state, pool *p, int64_t k, double wanted)
+{
+    sl_status status = SL_OK;
+    sl_opt_trial *trial = &p->trial[k];
+    const bool blocked = trial->blocked;
+    if (!blocked) {
+        trial->promise = score(state, trial, wanted);
+    }
+    trial->valid = true;
+    SL_TRY(sl_opt_trial_settle(state, blocked, trial));
+    trial->blocked = !blocked && !trial->valid;
+    if (!(score(state, trial, wanted) > 0.0)) {
+        SL_TRY(add_parting(state, trial->old[0], p));
+    }
+cleanup:
+    return status;
+}
+
 /* The best candidate, solved to the end; *taken = -1 = none is left. */
 static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
 {
@@ -271,19 +312,24 @@ static sl_status choose(sl_opt_state *state, pool *p, int64_t *taken)
     *taken = -1;
     while (*taken < 0) {
         const int64_t best = find_best(state, p, wanted, false);
+        if (best >= 0 && p->trial[best].probed && !p->trial[best].settled) {
+            SL_TRY(settle(state, p, best, wanted)); /* it may be worth less than the probe promised, or overlap */
+            continue;
+        }
         if (best < 0 || !p->trial[best].probed) {
             int32_t count;
             SL_TRY(probe_best(state, p, wanted, &count));
-            if (count == 0) {
-                break;
+            if (count > 0) {
+                continue;
             }
-        } else if (p->trial[best].settled) {
+        }
+        const int64_t blocked = find_blocked(state->def, p, best < 0 ? 0.0 : score(state, &p->trial[best], wanted));
+        if (blocked >= 0) {
+            SL_TRY(settle(state, p, blocked, wanted));
+        } else if (best < 0) {
+            break;
+        } else {
             *taken = best;
-        } else { /* it may be worth less than the probe promised, or overlap: then others come first */
-            SL_TRY(sl_opt_trial_settle(state, &p->trial[best]));
-            if (!(score(state, &p->trial[best], wanted) > 0.0)) {
-                SL_TRY(add_parting(state, p->trial[best].old[0], p));
-            }
         }
     }
 cleanup:
@@ -319,7 +365,11 @@ static sl_status bisect_stuck(sl_opt_state *state, pool *p, int64_t *taken)
             SL_TRY(run_trials(state, &trial, 1, probe_range));
         }
         if (!trial->settled) {
-            SL_TRY(sl_opt_trial_settle(state, trial));
+            SL_TRY(sl_opt_trial_settle(state, false, trial));
+            if (!trial->valid) {
+                trial->valid = true;
+                SL_TRY(sl_opt_trial_settle(state, true, trial));
+            }
         }
         if (trial->settled && trial->loss < fmin(least, WORSE * most)) {
             least = trial->loss;

@@ -109,8 +109,10 @@ typedef struct sl_opt_trial {
     int32_t old[2];   /* charts that it replaces; -1 = only one */
     sl_opt_chart *to; /* nto, owned */
     int32_t nto;
-    bool valid;    /* all disks, and without flips */
-    bool probed;   /* a cut: its charts are made, and ranked by a few steps; before that it is guessed at */
+    bool valid;   /* all disks, and without flips */
+    bool probed;  /* a cut: its charts are made, and ranked by a few steps; before that it is guessed at */
+    bool blocked; /* a cut that overlaps when its border is let go; with `promise`, its score before that was known */
+    double promise;
     bool settled;  /* solved to the end, no overlap */
     bool dropped;  /* not solved at all: two charts joined as they lie overlap */
     double length; /* of the edges, over sqrt(area) */
@@ -136,8 +138,9 @@ SL_NODISCARD sl_status sl_opt_trial_guess(const sl_opt_state *state, sl_opt_tria
 /* A few Newton steps for ranking a cut. */
 SL_NODISCARD sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_trial *trial);
 
-/* Solves the charts of a cut to the end and proves them embedded; trial->valid = trial->settled = the outcome. */
-SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial);
+/* Solves the charts of a cut to the end, with borders that stay simple or ones that are let go, and proves them
+ * embedded; trial->valid = trial->settled = the outcome. */
+SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, bool simple, sl_opt_trial *trial);
 
 /* The same of a sewing: first roughly, and to the end only where that leaves hope for the targets. */
 SL_NODISCARD sl_status sl_opt_trial_sew(const sl_opt_state *state, sl_opt_trial *trial);
@@ -147,9 +150,10 @@ SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
 
 /* How a chart is solved. */
 typedef enum sl_opt_effort {
-    SL_OPT_WARM,      /* from the map at hand; as COLD where that overlaps */
-    SL_OPT_HELD,      /* the same for a map that is embedded: the border may be held by where it touches, too */
+    SL_OPT_WARM,      /* from the map at hand; from nothing where that overlaps */
+    SL_OPT_HELD,      /* the same for a map that is embedded; then with a border that stays simple, from both */
     SL_OPT_WARM_ONLY, /* from the map at hand, with a border that is held if need be, or not at all */
+    SL_OPT_SIMPLE,    /* from nothing, with a border that stays simple */
     SL_OPT_COLD,      /* from nothing; once more with a simple border where that overlaps */
     SL_OPT_GUESSED,   /* the same, from about where the vertices will be: the map at hand may have flips */
     SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */

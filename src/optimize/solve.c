@@ -103,8 +103,8 @@ cleanup:
 }
 
 /* From the map at hand. Where that ends in an overlap: with `anew` from nothing, since that may come to lie otherwise;
- * with `held` from the map in start with a border that must stay simple, which stops where it touches; last, from
- * nothing with such a border. */
+ * with `held` from the map at hand with a border that must stay simple, which stops where it touches; with both, last,
+ * from nothing with such a border. */
 static sl_status solve_warm(attempt *a, bool anew, bool held, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
@@ -120,7 +120,7 @@ static sl_status solve_warm(attempt *a, bool anew, bool held, double *uv, bool *
     if (!*embedded && held && solved) {
         SL_TRY(solve_opened(a, uv, embedded));
     }
-    if (!*embedded && anew) {
+    if (!*embedded && anew && held) {
         SL_TRY(solve_from_nothing(a, true, uv, embedded));
     }
 cleanup:
@@ -182,6 +182,9 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_
     case SL_OPT_GUESSED:
         a.def.guess = a.start;
         SL_TRY(solve_cold(&a, uv, embedded));
+        break;
+    case SL_OPT_SIMPLE:
+        SL_TRY(solve_from_nothing(&a, true, uv, embedded));
         break;
     case SL_OPT_COLD:
         SL_TRY(solve_cold(&a, uv, embedded));

@@ -180,11 +180,12 @@ static sl_status drop_crossing(sl_opt_trial *trial)
     return status;
 }
 
-sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_trial *trial)
+sl_status sl_opt_trial_settle(const sl_opt_state *state, bool simple, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        SL_TRY(sl_opt_solve(state, trial->to[k].patch, SL_OPT_WARM, trial->to[k].uv, &trial->valid));
+        SL_TRY(sl_opt_solve(state, trial->to[k].patch, simple ? SL_OPT_SIMPLE : SL_OPT_WARM, trial->to[k].uv,
+                            &trial->valid));
     }
     trial->settled = trial->valid;
     if (trial->valid) {
