@@ -17,8 +17,8 @@ static const double BLOCKED_FACTOR = 3.0; /* at coarse targets, of what a free c
                                            * with a held border is tried */
 static const int BALANCE_EVERY = 3;       /* cuts */
 static const double LEAST_SHARE =
-    0.01;                         /* of what is missing, or of a budget: a cut that gains less is none to go on by */
-static const double WORSE = 1.01; /* times its loss, at most, that a stuck chart's halves may have */
+    0.01;                        /* of what is missing, or of a budget: a cut that gains less is none to go on by */
+static const double WORSE = 1.2; /* times its loss, at most, that a stuck chart's halves may have */
 static const int32_t MOST_BISECTED = 12; /* stuck charts a search */
 
 /* The candidates of all charts, those of a chart until it changes. */
