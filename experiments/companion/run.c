@@ -70,7 +70,8 @@ static void introduce(exp_page *page)
     exp_page_html(
         page,
         "<p>The paper compares segmentations by eye. Here every generated model is unwrapped by spectral cuts and by "
-        "seven other ways to cut, <b>as cut</b> (the paper as printed) and at the <b>default</b> settings (cuts "
+        "seven other ways to cut, <b>as cut</b> (the paper as printed) and at the <b>default</b> settings of the "
+        "recursion (<code>--preset fast</code>: cuts "
         "smoothed by a band minimum cut, loops joined, neighbours sewn while they stay valid), and by the search for "
         "fewer charts and shorter seams (<b>best</b>: <code>--preset best</code>). Only the cut differs: recursion "
         "until valid, flattening and its bounds are the same for all; symmetry is not used.</p>\n<ul>\n"
