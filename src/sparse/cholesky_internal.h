@@ -67,18 +67,8 @@ struct sl_cholesky {
     int32_t *outside;
 };
 
-/* FNV-1a over the pointers and rows of A. */
-static inline uint64_t sl_pattern_hash(const sl_csc *A)
-{
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (int32_t j = 0; j < A->ncols; j++) {
-        hash = (hash ^ (uint64_t)A->colptr[j + 1]) * 0x100000001b3u;
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            hash = (hash ^ (uint64_t)A->row[p]) * 0x100000001b3u;
-        }
-    }
-    return hash;
-}
+/* Of the pointers and rows of A; what it is may change from one build to the next. */
+uint64_t sl_pattern_hash(const sl_csc *A);
 
 static inline int32_t sl_supernode_width(const sl_cholesky *F, int32_t s)
 {

@@ -1,31 +1,6 @@
 #include "base/memory.h"
 #include "sparse/front.h"
 
-#include <math.h>
-
-sl_status sl_check_values(const sl_cholesky *F, const sl_csc *A, double sigma, double *largest,
-                          double *largest_diagonal)
-{
-    *largest = *largest_diagonal = 0.0;
-    const bool same_pattern = A->ncols == F->n && A->nrows == F->n && A->colptr[F->n] == F->pattern_nnz &&
-                              sl_pattern_hash(A) == F->pattern_hash;
-    if (!same_pattern || !isfinite(sigma)) {
-        return SL_BAD_INPUT;
-    }
-    for (int32_t j = 0; j < F->n; j++) {
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            const double a = p == A->colptr[j] ? A->val[p] - sigma : A->val[p];
-            if (!isfinite(a)) {
-                return SL_BAD_INPUT;
-            }
-            *largest = fabs(a) > *largest ? fabs(a) : *largest;
-        }
-        const double diagonal = fabs(A->val[A->colptr[j]] - sigma);
-        *largest_diagonal = diagonal > *largest_diagonal ? diagonal : *largest_diagonal;
-    }
-    return SL_OK;
-}
-
 /* L and the signs, when this is the first factorisation. */
 static sl_status make_room(sl_cholesky *F)
 {
@@ -52,9 +27,9 @@ cleanup:
 sl_status sl_cholesky_factor_shifted(sl_cholesky *F, const sl_csc *A, double sigma, const sl_context *context,
                                      int32_t *bad_column)
 {
-    double largest, diagonal;
+    double diagonal;
     sl_status status = SL_OK;
-    SL_TRY(sl_check_values(F, A, sigma, &largest, &diagonal));
+    SL_TRY(sl_check_values(F, A, sigma, NULL, &diagonal));
     SL_TRY(make_room(F));
     sl_front_job job = {.F = F,
                         .A = A,

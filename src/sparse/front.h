@@ -30,7 +30,8 @@ SL_NODISCARD sl_status sl_factor_fronts(sl_front_job *job, const sl_context *con
 SL_NODISCARD sl_status sl_front_space_init(const sl_cholesky *F, int64_t room, sl_front_space *space);
 void sl_front_space_clear(sl_front_space *space);
 
-/* max|a_ij| and max|a_ii| of A - sigma I; SL_BAD_INPUT when a value is not finite or A has another pattern than F. */
+/* max|a_ij| (nullable) and max|a_ii| of A - sigma I; SL_BAD_INPUT when a value is not finite or A has another pattern
+ * than F. */
 SL_NODISCARD sl_status sl_check_values(const sl_cholesky *F, const sl_csc *A, double sigma, double *largest,
                                        double *largest_diagonal);
 

@@ -250,12 +250,26 @@ static void values_not_finite_or_of_another_pattern_are_bad_input(void **state)
     sl_cholesky *F = factor_of(A, NULL);
     const int64_t last = A->colptr[A->ncols] - 1;
     const double bad[] = {NAN, INFINITY, -INFINITY};
-    for (size_t k = 0; k < SL_COUNTOF(bad); k++) {
-        const double good = A->val[last / 2];
-        A->val[last / 2] = bad[k];
-        assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_BAD_INPUT);
-        A->val[last / 2] = good;
+    for (int64_t p = 0; p <= last; p++) { /* each lane of the vectors they are looked at in, and the rest */
+        const double good = A->val[p];
+        for (size_t k = 0; k < SL_COUNTOF(bad); k++) {
+            A->val[p] = bad[k];
+            assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_BAD_INPUT);
+        }
+        A->val[p] = good;
     }
+    for (int32_t j = 0; j < A->ncols; j++) { /* a row moved up or down where there is room */
+        for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
+            const int32_t row = A->row[p];
+            A->row[p] = row > A->row[p - 1] + 1 ? row - 1 : row + 1;
+            assert_int_equal(sl_cholesky_factor(F, A, NULL), SL_BAD_INPUT);
+            A->row[p] = row;
+        }
+    }
+    const double first = A->val[0];
+    A->val[0] = 1.5e308; /* finite, but not less sigma */
+    assert_int_equal(sl_cholesky_factor_shifted(F, A, -1.5e308, NULL, NULL), SL_BAD_INPUT);
+    A->val[0] = first;
     sl_csc *other = random_spd(MATRIX_GRID, 100, 0.3, &rng); /* another shuffle: as many entries elsewhere */
     assert_int_equal(other->colptr[100], A->colptr[100]);
     assert_int_equal(sl_cholesky_factor(F, other, NULL), SL_BAD_INPUT);
