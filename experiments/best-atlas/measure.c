@@ -10,8 +10,8 @@ enum { RESOLUTION = 1024 };
 const char *const variant_key[RUNS] = {"paper", "none", "axis", "first", "same"};
 const char *const variant_name[RUNS] = {"paper", "best, nothing protected", "best, axis protected",
                                         "best, axis and first cut protected", "best, at the paper's L2"};
-const char *const stage_name[STAGES] = {"start",      "guesses", "cuts",  "balance", "sewing",
-                                        "straighten", "packing", "check", "rest"};
+const char *const stage_name[STAGES] = {"coarsen",    "start", "guesses", "cuts",  "balance", "sewing",
+                                        "straighten", "carry", "packing", "check", "rest"};
 
 /* When the packing began. */
 typedef struct stopwatch {

@@ -28,6 +28,6 @@ set style fill solid 0.85 noborder
 set boxwidth 0.65
 set xtics rotate by 40 right
 set key outside right center vertical invert
-shades = "#8a5fb5 #9fd0b4 #1a7f4b #2f6fb5 #86b4e0 #7a4a1e #e0a030 #b3261e #9aa3ad"
-stages = "start guesses cuts balance sewing straighten packing check rest"
-plot for [s = 4:12] 'timings.csv' skip 1 every 5::2 using s:xtic(1) lc rgb word(shades, s - 3) title word(stages, s - 3)
+shades = "#d9b8e8 #8a5fb5 #9fd0b4 #1a7f4b #2f6fb5 #86b4e0 #7a4a1e #c98a5a #e0a030 #b3261e #9aa3ad"
+stages = "coarsen start guesses cuts balance sewing straighten carry packing check rest"
+plot for [s = 4:14] 'timings.csv' skip 1 every 5::2 using s:xtic(1) lc rgb word(shades, s - 3) title word(stages, s - 3)

@@ -167,8 +167,9 @@ static void tables(exp_page *page, const results *r)
     exp_page_table_end(page);
     exp_page_html(
         page,
-        "<h3>Cost by stage</h3>\n<p>CPU seconds: the first spectral cuts (start), guesses at candidate cuts, those "
-        "tried in full, the balance of stretch and angle, sewing, straightening, packing, the check; "
+        "<h3>Cost by stage</h3>\n<p>CPU seconds: coarse meshes, the first spectral cuts (start), guesses at candidate "
+        "cuts, those tried in full, the balance of stretch and angle, sewing, straightening, the coarse meshes' "
+        "charts made on the finer ones (carry), packing, the check; "
         "the rest is reading, symmetry and edge weights.</p>\n<div class=\"plot\">\n");
     exp_page_figure(page, "", "timings.svg", "CPU seconds by stage and model", "Axis protected: where the time goes.");
     exp_page_html(page, "</div>\n");

@@ -321,9 +321,9 @@ static json_t *atlas_json(const sl_atlas *atlas, const sl_atlas_def *def)
     if (def->best) {
         const sl_optimize_info *info = &atlas->optimized;
         json_object_set_new(j, "search",
-                            json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "pieces", info->pieces, "failed", info->failed,
-                                      "missed", info->missed, "cuts", info->cuts, "sewings", info->sewings, "trials",
-                                      info->trials));
+                            json_pack("{s:i, s:i, s:i, s:i, s:i, s:i, s:i}", "pieces", info->pieces, "failed",
+                                      info->failed, "missed", info->missed, "direct", info->direct, "cuts", info->cuts,
+                                      "sewings", info->sewings, "trials", info->trials));
     }
     json_object_set_new(j, "symmetry", symmetry_json(atlas));
     json_object_set_new(j, "charts", charts_json(atlas));

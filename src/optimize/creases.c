@@ -117,6 +117,7 @@ sl_status sl_opt_search_creases(sl_opt_state *state, const sl_segment_def *segme
             *state = other;
             other = swap;
         }
+        sl_opt_add_info(&other.info, &state->info);
     }
 cleanup:
     sl_opt_state_clear(&other);

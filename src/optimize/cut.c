@@ -12,7 +12,7 @@ static const int32_t PROBE_STEPS = 4;
 static const double LEAST_GAIN = 4e-3; /* of a whole budget: below it nothing is gained */
 /* Of any cut, in seam length over sqrt(area): else seams are made an edge at a time. The first at these targets and
  * coarser ones, down to the last at finer ones, which short cuts reach best. */
-static const double CUT_PRICE = 0.1, COARSE_STRETCH = 1.05, COARSE_ANGLE = 1.2, LEAST_CUT_PRICE = 0.02;
+static const double CUT_PRICE = 0.1, LEAST_CUT_PRICE = 0.02;
 static const double BLOCKED_FACTOR = 3.0; /* at coarse targets, of what a free cut is worth, and once more: then one
                                            * with a held border is tried */
 static const int BALANCE_EVERY = 3;       /* cuts */
@@ -185,17 +185,9 @@ static double need(const sl_opt_state *state)
     return loss > spare ? loss - spare : HUGE_VAL;
 }
 
-/* How coarse the targets are, at most 1. */
-static double coarseness(const sl_optimize_def *def)
-{
-    const double least =
-        fmin((def->target_stretch - 1.0) / (COARSE_STRETCH - 1.0), (def->target_angle - 1.0) / (COARSE_ANGLE - 1.0));
-    return fmin(least, 1.0);
-}
-
 static double cut_price(const sl_optimize_def *def)
 {
-    return fmax(CUT_PRICE * coarseness(def), LEAST_CUT_PRICE);
+    return fmax(CUT_PRICE * sl_opt_coarseness(def), LEAST_CUT_PRICE);
 }
 
 static double score(const sl_opt_state *state, const sl_opt_trial *trial, double wanted)
@@ -275,7 +267,7 @@ cleanup:
 static int64_t find_blocked(const sl_optimize_def *def, const pool *p, double score)
 {
     int64_t best = -1;
-    double most = (1.0 + BLOCKED_FACTOR * coarseness(def)) * score;
+    double most = (1.0 + BLOCKED_FACTOR * sl_opt_coarseness(def)) * score;
     for (int64_t k = 0; k < p->count; k++) {
         if (p->trial[k].blocked && p->trial[k].promise > most) {
             best = k;

@@ -38,12 +38,14 @@ sl_optimize_def sl_optimize_default(void);
 
 /* Where the time goes. */
 typedef enum sl_optimize_stage {
+    SL_OPTIMIZE_COARSEN, /* coarse meshes, and what their edges cost */
     SL_OPTIMIZE_START,   /* the first cuts */
     SL_OPTIMIZE_GUESS,   /* candidate cuts, and guesses at them */
     SL_OPTIMIZE_CUT,     /* probes on whole charts, and the chosen ones solved to the end */
     SL_OPTIMIZE_BALANCE, /* the weight of the energy */
     SL_OPTIMIZE_SEW,     /* without balances */
     SL_OPTIMIZE_STRAIGHTEN,
+    SL_OPTIMIZE_CARRY, /* the charts of a coarse mesh made and solved on the next finer one */
     SL_OPTIMIZE_STAGES
 } sl_optimize_stage;
 
@@ -51,9 +53,10 @@ typedef enum sl_optimize_stage {
 typedef struct sl_optimize_info {
     int32_t pieces, failed; /* cut here; left to the recursion because no valid start was found */
     int32_t missed;         /* pieces whose targets were not met */
-    int32_t cuts, sewings;  /* accepted */
-    int32_t straightened;   /* parts of seams that were laid anew */
-    int32_t trials;         /* candidate cuts and sewings solved */
+    int32_t direct; /* large pieces searched as they are since the seams of no coarse mesh could be carried over */
+    int32_t cuts, sewings; /* accepted, on whatever mesh */
+    int32_t straightened;  /* parts of seams that were laid anew */
+    int32_t trials;        /* candidate cuts and sewings solved */
     /* Of the process's CPU time [s]: of one thread, nothing else in the process running. The only figures that differ
      * from run to run. */
     double seconds[SL_OPTIMIZE_STAGES];

@@ -244,6 +244,12 @@ SL_NODISCARD sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *s
 double sl_opt_clock(void);
 double sl_opt_book(sl_opt_state *state, sl_optimize_stage stage, double since);
 
+/* Adds counts and times. */
+void sl_opt_add_info(const sl_optimize_info *from, sl_optimize_info *to);
+
+/* How coarse the targets are: 1 = L2 of 1.05 and angle of 1.2, or coarser; nearly 0 = no distortion at all. */
+double sl_opt_coarseness(const sl_optimize_def *def);
+
 /* What seams and charts cost. */
 double sl_opt_price(const sl_opt_state *state);
 

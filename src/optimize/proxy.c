@@ -6,13 +6,15 @@
 
 #include <math.h>
 
-static const int32_t SEARCHED = 4000;                       /* triangles of the mesh that is searched, */
-static const int32_t TRIED = 24000;                         /* of the one on which its charts are tried, */
-static const int32_t SEARCH_FROM = 30000, TRY_FROM = 48000; /* and of pieces that have them */
-static const int CARRIES = 3;                               /* of the searched mesh's seams */
-static const int FINISHES = 2;                              /* of the tried mesh's */
-static const double ENOUGH = 0.93;                          /* share of the budget that is well spent */
-static const double SAME = 0.005;                           /* no more comes of searching on */
+static const int32_t SEARCHED = 4000;     /* triangles of the mesh that is searched, */
+static const int32_t TRIED = 24000;       /* of the one on which its charts are tried, */
+static const int32_t TRY_FROM = 48000;    /* of pieces that have the second, */
+static const int32_t SEARCH_FROM = 10000, /* and the first: at coarse targets, */
+    SEARCH_FINE_FROM = 30000;             /* and at finer ones, for which the coarse mesh lacks detail */
+static const int CARRIES = 3;             /* of the searched mesh's seams */
+static const int FINISHES = 2;            /* of the tried mesh's */
+static const double ENOUGH = 0.9;         /* share of the budget that is well spent */
+static const double SAME = 0.005;         /* no more comes of searching on */
 static const double MOST_RATIO = 2.0; /* between the losses of one mesh and the next finer, as far as it is believed */
 
 /* A coarse mesh. */
@@ -40,6 +42,7 @@ static sl_status level_init(const sl_opt_state *finer, int32_t triangles, level 
 {
     sl_status status = SL_OK;
     l->def = *finer->def;
+    const double since = sl_opt_clock();
     SL_TRY(sl_report_progress(finer->context, "coarsen", 0.0));
     SL_TRY(sl_opt_decimate(finer->surface->patch, triangles, &l->mesh, &l->vertex));
     l->weight = sl_alloc(l->mesh->nh, sizeof *l->weight);
@@ -48,6 +51,7 @@ static sl_status level_init(const sl_opt_state *finer, int32_t triangles, level 
     SL_TRY(sl_triangulation_create(l->mesh, &l->triangulation));
     SL_TRY(sl_opt_surface_init(l->mesh, l->triangulation, l->weight, &l->surface));
     SL_TRY(sl_opt_state_init(&l->surface, &l->def, finer->context, &l->state));
+    (void)sl_opt_book(&l->state, SL_OPTIMIZE_COARSEN, since);
 cleanup:
     return status;
 }
@@ -128,7 +132,9 @@ static sl_status remember(const level *l, double share, nearest *best)
 static sl_status try_charts(const level *l, sl_opt_state *finer, double *share, bool *done)
 {
     sl_status status = SL_OK;
+    const double since = sl_opt_clock();
     SL_TRY(carry(l, finer, done));
+    (void)sl_opt_book(finer, SL_OPTIMIZE_CARRY, since);
     if (*done) {
         SL_TRY(weigh_anew(finer));
         *share = share_of(finer);
@@ -144,6 +150,7 @@ static sl_status make_good(level *l, nearest *best, sl_opt_state *finer, double 
     if (best->share < *share) {
         const sl_opt_state swap = l->state;
         l->state = best->state;
+        l->state.info = swap.info;
         best->state = swap;
         SL_TRY(try_charts(l, finer, share, done));
     }
@@ -165,16 +172,17 @@ static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
         const double last = share;
         SL_TRY(search_again(l));
         SL_TRY(try_charts(l, finer, &share, done));
-        if (!*done || (share <= 1.0 && (share >= ENOUGH || fabs(share - last) < SAME))) {
+        if (!*done || (share <= 1.0 && (share >= ENOUGH || fabs(share - last) < SAME)) ||
+            (share > 1.0 && best.share <= 1.0)) {
             break;
         }
         SL_TRY(remember(l, share, &best));
         correct_targets(finer, l);
     }
-    finer->info = l->state.info;
     if (*done && share > 1.0) {
         SL_TRY(make_good(l, &best, finer, &share, done));
     }
+    sl_opt_add_info(&l->state.info, &finer->info);
 cleanup:
     sl_opt_state_clear(&best.state);
     return status;
@@ -195,8 +203,17 @@ static sl_status finish(level *tried, sl_opt_state *fine, bool *done)
             break;
         }
     }
-    fine->info = tried->state.info;
+    sl_opt_add_info(&tried->state.info, &fine->info);
 cleanup:
+    return status;
+}
+
+/* Seams that follow a coarse mesh's edges cost more than they need on the piece. */
+static sl_status straighten(sl_opt_state *state)
+{
+    const double since = sl_opt_clock();
+    const sl_status status = sl_opt_straighten(state);
+    (void)sl_opt_book(state, SL_OPTIMIZE_STRAIGHTEN, since);
     return status;
 }
 
@@ -218,6 +235,8 @@ static sl_status through_levels(sl_opt_state *state, const sl_segment_def *segme
     }
     if (*done && two) {
         SL_TRY(finish(&tried, state, done));
+    } else if (*done) {
+        SL_TRY(straighten(state));
     }
 cleanup:
     level_clear(&searched);
@@ -225,20 +244,30 @@ cleanup:
     return status;
 }
 
+/* Are the targets so coarse that a coarse mesh shows all that matters? */
+static int32_t search_from(const sl_optimize_def *def)
+{
+    return sl_opt_coarseness(def) < 1.0 ? SEARCH_FINE_FROM : SEARCH_FROM;
+}
+
 sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment, const sl_triangulation *triangulation,
                        bool *done)
 {
     sl_status status = SL_OK;
+    const int32_t nt = state->surface->patch->nt;
     *done = false;
-    if (state->surface->patch->nt > SEARCH_FROM) {
+    if (nt > search_from(state->def)) {
         SL_TRY(through_levels(state, segment, done));
+        state->info.direct += !*done;
     }
     if (!*done) {
         SL_TRY(sl_opt_start(state, segment, triangulation, done));
         if (*done) {
             SL_TRY(sl_opt_search(state));
-            SL_TRY(sl_opt_search_creases(state, segment, triangulation));
         }
+    }
+    if (*done && nt <= SEARCH_FINE_FROM) {
+        SL_TRY(sl_opt_search_creases(state, segment, triangulation));
     }
 cleanup:
     return status;

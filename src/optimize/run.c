@@ -27,7 +27,7 @@ sl_optimize_def sl_optimize_default(void)
 /* What the pieces report to, side by side: sums of whole numbers do not depend on the order. */
 typedef struct optimizer {
     const sl_optimize_def *def;
-    atomic_int pieces, missed, cuts, sewings, straightened, trials;
+    atomic_int pieces, missed, direct, cuts, sewings, straightened, trials;
     atomic_llong microseconds[SL_OPTIMIZE_STAGES];
 } optimizer;
 
@@ -108,6 +108,7 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
         write_back(&state, piece, corner_uv);
     }
     o->pieces++;
+    o->direct += state.info.direct;
     o->cuts += state.info.cuts;
     o->sewings += state.info.sewings;
     o->straightened += state.info.straightened;
@@ -145,6 +146,7 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
         *info = (sl_optimize_info){.pieces = o.pieces,
                                    .failed = o.pieces,
                                    .missed = o.missed,
+                                   .direct = o.direct,
                                    .cuts = o.cuts,
                                    .sewings = o.sewings,
                                    .straightened = o.straightened,

@@ -7,7 +7,8 @@
 #include <string.h>
 #include <time.h>
 
-static const double MET_WEIGHT = 0.15; /* of a target that is met, against one that is not */
+static const double COARSE_STRETCH = 1.05, COARSE_ANGLE = 1.2; /* targets for which a surface's detail matters little */
+static const double MET_WEIGHT = 0.15;                         /* of a target that is met, against one that is not */
 
 sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def *def, const sl_context *context,
                             sl_opt_state *out)
@@ -36,6 +37,24 @@ double sl_opt_book(sl_opt_state *state, sl_optimize_stage stage, double since)
     const double now = sl_opt_clock();
     state->info.seconds[stage] += now - since;
     return now;
+}
+
+void sl_opt_add_info(const sl_optimize_info *from, sl_optimize_info *to)
+{
+    to->cuts += from->cuts;
+    to->sewings += from->sewings;
+    to->straightened += from->straightened;
+    to->trials += from->trials;
+    for (int k = 0; k < SL_OPTIMIZE_STAGES; k++) {
+        to->seconds[k] += from->seconds[k];
+    }
+}
+
+double sl_opt_coarseness(const sl_optimize_def *def)
+{
+    const double least =
+        fmin((def->target_stretch - 1.0) / (COARSE_STRETCH - 1.0), (def->target_angle - 1.0) / (COARSE_ANGLE - 1.0));
+    return fmin(least, 1.0);
 }
 
 void sl_opt_state_clear(sl_opt_state *state)

@@ -22,7 +22,8 @@ enum { DEFAULT = 5 }; /* of the targets */
 static const char *const MESH[MESHES] = {"cow",         "spot",    "suzanne",    "homer",
                                          "cheburashka", "fandisk", "rocker-arm", "hand"};
 static const char *const TARGET[TARGETS] = {"uvatlas", "fine", "xatlas-l2", "xatlas-both", "prototype", "default"};
-static const char *const STAGE[SL_OPTIMIZE_STAGES] = {"start", "guess", "cut", "balance", "sew", "straighten"};
+static const char *const STAGE[SL_OPTIMIZE_STAGES] = {"coarsen", "start", "guess",      "cut",
+                                                      "balance", "sew",   "straighten", "carry"};
 
 /* One row of the peers, as far as it is compared. */
 typedef struct peer {
