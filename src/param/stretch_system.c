@@ -216,57 +216,20 @@ static const double *points_of(const sl_patch *patch, const sl_stretch_freedom *
     return points;
 }
 
-/* The order of elimination, found on the blocks. perm: unknowns. */
-static sl_status order_unknowns(const block_graph *g, const double *points, int32_t *perm)
-{
-    sl_csc *graph = NULL;
-    int64_t nnz = g->blocks, p = 0;
-    for (int32_t i = 0; i < g->blocks; i++) {
-        nnz += g->end[i] - g->first[i];
-    }
-    sl_status status = sl_csc_create(g->blocks, g->blocks, nnz, &graph);
-    if (status != SL_OK) {
-        return status;
-    }
-    for (int32_t i = 0; i < g->blocks; i++) {
-        graph->row[p++] = i;
-        for (int64_t k = g->first[i]; k < g->end[i]; k++) {
-            graph->row[p++] = g->hi[k];
-        }
-        graph->colptr[i + 1] = p;
-    }
-    memset(graph->val, 0, (size_t)nnz * sizeof *graph->val);
-    status = sl_order(graph, SL_ORDER_AUTO, points, perm);
-    for (int32_t k = g->blocks; k-- > 0 && status == SL_OK;) { /* backwards: perm[k] is read before it is overwritten */
-        const int32_t i = perm[k];
-        for (int32_t c = 0; c < g->size; c++) {
-            perm[(int64_t)g->size * k + c] = g->size * i + c;
-        }
-    }
-    sl_csc_free(graph);
-    return status;
-}
-
-static sl_status analyze(const sl_patch *patch, const sl_stretch_freedom *freedom, const block_graph *g,
-                         sl_stretch_system *system)
+static sl_status analyze(const sl_patch *patch, const sl_stretch_freedom *freedom, sl_stretch_system *system)
 {
     sl_status status = SL_OK;
     double *points = NULL;
-    int32_t *perm = sl_alloc(freedom->unknowns, sizeof *perm);
-    if (freedom->unknown != NULL && freedom->block == 2) {
-        points = sl_alloc(g->blocks, 3 * sizeof *points);
-    }
-    if (perm == NULL || (points == NULL && freedom->unknown != NULL && freedom->block == 2)) {
-        status = SL_OUT_OF_MEMORY;
-        goto cleanup;
-    }
-    SL_TRY(order_unknowns(g, points_of(patch, freedom, points), perm));
     sl_cholesky_def def = sl_cholesky_default();
-    def.perm = perm;
+    def.block = freedom->block;
+    if (freedom->unknown != NULL && freedom->block == 2) {
+        points = sl_alloc(freedom->unknowns / 2, 3 * sizeof *points);
+        SL_TRY(points != NULL ? SL_OK : SL_OUT_OF_MEMORY);
+    }
+    def.xyz = points_of(patch, freedom, points);
     SL_TRY(sl_cholesky_analyze(system->H, &def, &system->factor));
 cleanup:
     sl_free(points);
-    sl_free(perm);
     return status;
 }
 
@@ -277,7 +240,7 @@ sl_status sl_stretch_system_init(const sl_patch *patch, const sl_stretch_freedom
     *system = (sl_stretch_system){0};
     SL_TRY(block_graph_init(patch, freedom, &g));
     SL_TRY(create_matrix(&g, &system->H));
-    SL_TRY(analyze(patch, freedom, &g, system));
+    SL_TRY(analyze(patch, freedom, system));
     system->place = sl_alloc(patch->nt, SL_ELEMENT * sizeof *system->place);
     system->reduced = sl_alloc(freedom->unknowns, sizeof *system->reduced);
     system->work = sl_alloc(sl_cholesky_work_size(system->factor, 1), sizeof *system->work);

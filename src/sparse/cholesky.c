@@ -1,8 +1,10 @@
 #include "sparse/cholesky.h"
 
 #include "base/memory.h"
+#include "sparse/blocks.h"
 #include "sparse/cholesky_internal.h"
 #include "sparse/elimination.h"
+#include "sparse/entries.h"
 #include "sparse/front.h"
 #include "sparse/supernode.h"
 #include "sparse/tasks.h"
@@ -11,12 +13,15 @@
 
 sl_cholesky_def sl_cholesky_default(void)
 {
-    return (sl_cholesky_def){.ordering = SL_ORDER_AUTO};
+    return (sl_cholesky_def){.ordering = SL_ORDER_AUTO, .block = 1};
 }
 
-/* What analysis needs and factorisation does not. */
+/* What analysis needs and factorisation does not. All is about the graph of A's blocks. */
 typedef struct scratch {
-    int32_t *place; /* inverse of F->perm */
+    sl_csc blocks;       /* owned, where there are any */
+    const sl_csc *graph; /* blocks, or A itself */
+    int32_t n;           /* its order */
+    int32_t *place;      /* inverse of F->perm */
     sl_half half;
     int64_t *next;
     int32_t *parent, *post, *count;
@@ -26,6 +31,7 @@ typedef struct scratch {
 
 static void scratch_clear(scratch *w)
 {
+    sl_block_pattern_clear(&w->blocks);
     sl_free(w->place);
     sl_free(w->half.first);
     sl_free(w->half.index);
@@ -37,12 +43,20 @@ static void scratch_clear(scratch *w)
     sl_partition_clear(&w->partition);
 }
 
-static sl_status scratch_init(const sl_csc *A, scratch *w)
+static sl_status scratch_init(const sl_csc *A, int32_t block, scratch *w)
 {
-    const int64_t n = A->ncols;
-    w->place = sl_alloc(n, sizeof *w->place);
+    if (block != 1) {
+        const sl_status status = sl_block_pattern(A, block, &w->blocks);
+        if (status != SL_OK) {
+            return status;
+        }
+    }
+    w->graph = block != 1 ? &w->blocks : A;
+    w->n = w->graph->ncols;
+    const int64_t n = w->n;
+    w->place = sl_alloc(A->ncols, sizeof *w->place);
     w->half.first = sl_alloc(n + 1, sizeof *w->half.first);
-    w->half.index = sl_alloc(A->colptr[n] - n, sizeof *w->half.index);
+    w->half.index = sl_alloc(w->graph->colptr[n] - n, sizeof *w->half.index);
     w->next = sl_alloc(n, sizeof *w->next);
     w->parent = sl_alloc(n, sizeof *w->parent);
     w->post = sl_alloc(n, sizeof *w->post);
@@ -76,20 +90,20 @@ static sl_status find_permutation(const sl_csc *A, const sl_cholesky_def *def, i
 }
 
 /* perm = perm after order; place follows. spare: n. */
-static void compose(sl_cholesky *F, const int32_t *order, int32_t *place, int32_t *spare)
+static void compose(sl_cholesky *F, const int32_t *order, scratch *w, int32_t *spare)
 {
-    memcpy(spare, F->perm, (size_t)F->n * sizeof *spare);
-    for (int32_t k = 0; k < F->n; k++) {
+    memcpy(spare, F->perm, (size_t)w->n * sizeof *spare);
+    for (int32_t k = 0; k < w->n; k++) {
         F->perm[k] = spare[order[k]];
-        place[F->perm[k]] = k;
+        w->place[F->perm[k]] = k;
     }
 }
 
 /* The elimination tree, its postorder put into perm, and the column counts. */
-static void analyze_columns(sl_cholesky *F, const sl_csc *A, scratch *w)
+static void analyze_columns(sl_cholesky *F, scratch *w)
 {
-    const int32_t n = F->n;
-    sl_half_upper(A, w->place, w->next, &w->half);
+    const int32_t n = w->n;
+    sl_half_upper(w->graph, w->place, w->next, &w->half);
     sl_elimination_tree(n, &w->half, w->parent, w->work);
     sl_postorder(n, w->parent, w->post, w->work);
     int32_t *rank = w->work, *tree = w->count;
@@ -101,12 +115,12 @@ static void analyze_columns(sl_cholesky *F, const sl_csc *A, scratch *w)
         const int32_t up = tree[w->post[k]];
         w->parent[k] = up != -1 ? rank[up] : -1;
     }
-    compose(F, w->post, w->place, w->work);
-    sl_half_lower(A, w->place, w->next, &w->half);
+    compose(F, w->post, w, w->work);
+    sl_half_lower(w->graph, w->place, w->next, &w->half);
     sl_column_counts(n, &w->half, w->parent, w->count, w->work);
 }
 
-/* Marks the supernodes whose subtree has at most `patch` columns; returns how many. weight: supernodes. */
+/* Marks the supernodes whose subtree has at most `patch` blocks of columns; returns how many. weight: supernodes. */
 static int32_t find_bottom(const sl_partition *part, int32_t patch, int32_t *weight, bool *is_bottom)
 {
     int32_t bottom = 0;
@@ -127,12 +141,13 @@ static int32_t find_bottom(const sl_partition *part, int32_t patch, int32_t *wei
 static void renumber(sl_cholesky *F, const sl_partition *part, const bool *is_bottom, int32_t *number, int32_t *below,
                      int32_t *order)
 {
+    const int32_t b = F->block;
     int32_t next[2] = {F->bottom, 0};
     for (int32_t s = 0; s < part->count; s++) {
         number[s] = next[is_bottom[s]]++;
         F->walk[s] = number[s];
-        F->first[number[s] + 1] = part->first[s + 1] - part->first[s];
-        below[number[s]] = part->below[s];
+        F->first[number[s] + 1] = b * (part->first[s + 1] - part->first[s]);
+        below[number[s]] = b * part->below[s];
     }
     F->first[0] = 0;
     for (int32_t s = 0; s < part->count; s++) {
@@ -141,7 +156,7 @@ static void renumber(sl_cholesky *F, const sl_partition *part, const bool *is_bo
     }
     for (int32_t s = 0; s < part->count; s++) {
         const size_t width = (size_t)(part->first[s + 1] - part->first[s]);
-        memcpy(order + F->first[number[s]], part->order + part->first[s], width * sizeof *order);
+        memcpy(order + F->first[number[s]] / b, part->order + part->first[s], width * sizeof *order);
     }
 }
 
@@ -192,86 +207,36 @@ static sl_status adopt_partition(sl_cholesky *F, int32_t patch, scratch *w)
         status = SL_OUT_OF_MEMORY;
         goto cleanup;
     }
-    int32_t *number = w->work, *below = w->work + F->n, *order = w->work + 2 * (int64_t)F->n;
-    F->bottom = find_bottom(part, patch, number, is_bottom);
+    int32_t *number = w->work, *below = w->work + w->n, *order = w->work + 2 * (int64_t)w->n;
+    F->bottom = find_bottom(part, patch / F->block, number, is_bottom);
     renumber(F, part, is_bottom, number, below, order);
     link_tree(F, below);
-    compose(F, order, w->place, w->count);
+    compose(F, order, w, w->count);
 cleanup:
     sl_free(is_bottom);
     return status;
 }
 
-/* Row i stands below every supernode on the way from its entries in A up to its own: each list comes out sorted. */
-static void list_rows_below(sl_cholesky *F, const sl_half *upper, int64_t *next, int32_t *mark, int32_t *owner)
+/* Row i stands below every supernode on the way from its entries in A up to its own: each list comes out sorted. mark:
+ * supernodes; next: the same. */
+static void list_rows_below(sl_cholesky *F, const scratch *w, int32_t *mark, int32_t *owner)
 {
+    const int32_t b = F->block;
     for (int32_t s = 0; s < F->supernodes; s++) {
-        next[s] = F->below_first[s];
+        w->next[s] = F->below_first[s];
         mark[s] = -1;
-        for (int32_t k = F->first[s]; k < F->first[s + 1]; k++) {
+        for (int32_t k = F->first[s] / b; k < F->first[s + 1] / b; k++) {
             owner[k] = s;
         }
     }
-    for (int32_t i = 0; i < F->n; i++) {
-        for (int64_t p = upper->first[i]; p < upper->first[i + 1]; p++) {
-            for (int32_t s = owner[upper->index[p]]; s != owner[i] && mark[s] != i; s = F->parent[s]) {
-                F->below[next[s]++] = i;
+    for (int32_t i = 0; i < w->n; i++) {
+        for (int64_t p = w->half.first[i]; p < w->half.first[i + 1]; p++) {
+            for (int32_t s = owner[w->half.index[p]]; s != owner[i] && mark[s] != i; s = F->parent[s]) {
+                for (int32_t r = 0; r < b; r++) {
+                    F->below[w->next[s]++] = b * i + r;
+                }
                 mark[s] = i;
             }
-        }
-    }
-}
-
-/* Where the entry of row i and column k of L lies in the panel of s, the owner of k. */
-static int64_t place_in_panel(const sl_cholesky *F, int32_t s, int32_t i, int32_t k)
-{
-    const int32_t width = sl_supernode_width(F, s), column = k - F->first[s];
-    if (i < F->first[s + 1]) {
-        return sl_own_place(width, i - F->first[s], column);
-    }
-    int64_t lo = F->below_first[s], hi = F->below_first[s + 1] - 1;
-    while (lo < hi) {
-        const int64_t middle = lo + (hi - lo) / 2;
-        if (F->below[middle] < i) {
-            lo = middle + 1;
-        } else {
-            hi = middle;
-        }
-    }
-    SL_ASSERT(F->below[lo] == i);
-    return sl_own_size(width) +
-           sl_below_place(width, sl_supernode_below(F, s), (int32_t)(lo - F->below_first[s]), column);
-}
-
-static int32_t entry_owner(const int32_t *place, const int32_t *owner, int32_t i, int32_t j)
-{
-    return owner[place[i] < place[j] ? place[i] : place[j]];
-}
-
-/* Sorts A's entries by supernode. next: supernodes. */
-static void map_entries(sl_cholesky *F, const sl_csc *A, const int32_t *place, const int32_t *owner, int64_t *next)
-{
-    memset(F->entry_first, 0, ((size_t)F->supernodes + 1) * sizeof *F->entry_first);
-    for (int32_t j = 0; j < F->n; j++) {
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            F->entry_first[entry_owner(place, owner, A->row[p], j) + 1]++;
-        }
-    }
-    for (int32_t s = 0; s < F->supernodes; s++) {
-        F->entry_first[s + 1] += F->entry_first[s];
-        next[s] = F->entry_first[s];
-    }
-    for (int32_t k = 0; k < F->n; k++) {
-        const int32_t s = owner[k];
-        F->entry_from[next[s]] = (int32_t)A->colptr[F->perm[k]]; /* diagonal entries first: shifts are theirs */
-        F->entry_to[next[s]++] = (int32_t)place_in_panel(F, s, k, k);
-    }
-    for (int32_t j = 0; j < F->n; j++) {
-        for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
-            const int32_t a = place[j], b = place[A->row[p]];
-            const int32_t column = a < b ? a : b, row = a < b ? b : a, s = owner[column];
-            F->entry_from[next[s]] = (int32_t)p;
-            F->entry_to[next[s]++] = (int32_t)place_in_panel(F, s, row, column);
         }
     }
 }
@@ -308,9 +273,11 @@ static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
         return SL_OUT_OF_MEMORY;
     }
     int32_t *owner = w->count, *mark = w->work;
-    sl_half_upper(A, w->place, w->next, &w->half);
-    list_rows_below(F, &w->half, w->next, mark, owner);
-    map_entries(F, A, w->place, owner, w->next);
+    sl_half_upper(w->graph, w->place, w->next, &w->half);
+    list_rows_below(F, w, mark, owner);
+    sl_map_entries(F, A, w->graph, w->place, owner, w->next);
+    sl_block_expand(w->n, F->block, F->perm);
+    sl_block_expand(w->n, F->block, w->place);
     find_largest(F);
     return sl_tasks_create(F);
 }
@@ -331,6 +298,7 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
         goto cleanup;
     }
     F->n = A->ncols;
+    F->block = def->block;
     F->pattern_nnz = A->colptr[A->ncols];
     F->pattern_hash = sl_pattern_hash(A);
     F->pivot_rtol = def->pivot_rtol;
@@ -338,11 +306,11 @@ sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_ch
     F->kernels = sl_kernels_best();
     F->perm = sl_alloc(F->n, sizeof *F->perm);
     SL_TRY(F->perm != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    SL_TRY(scratch_init(A, &w));
-    SL_TRY(find_permutation(A, def, F->perm));
-    SL_TRY(invert(F->n, F->perm, w.place) ? SL_OK : SL_BAD_INPUT);
-    analyze_columns(F, A, &w);
-    SL_TRY(sl_partition_create(F->n, w.parent, w.count, &w.partition));
+    SL_TRY(scratch_init(A, def->block, &w));
+    SL_TRY(find_permutation(w.graph, def, F->perm));
+    SL_TRY(invert(w.n, F->perm, w.place) ? SL_OK : SL_BAD_INPUT);
+    analyze_columns(F, &w);
+    SL_TRY(sl_partition_create(w.n, F->block, w.parent, w.count, &w.partition));
     SL_TRY(adopt_partition(F, def->patch, &w));
     SL_TRY(analyze_rows(F, A, &w));
     F->place = w.place;

@@ -18,19 +18,22 @@ typedef enum sl_factor_kind {
 
 typedef struct sl_cholesky_def {
     sl_ordering ordering; /* default SL_ORDER_AUTO */
-    const double *xyz;    /* n x 3, a point per unknown for geometric dissection; borrowed; default NULL */
-    const int32_t *perm;  /* length n, an ordering to inherit; borrowed; default NULL = computed */
-    double pivot_rtol;    /* reject pivot d_k <= pivot_rtol * max|a_ii| (|d_k| for LDL'); unitless; default 0 */
-    sl_factor_kind kind;  /* default SL_FACTOR_LLT */
-    int32_t patch;        /* subtrees of at most so many columns are the bottom part, eliminated before all of the top;
-                             default 0 = no bottom part */
+    int32_t block;        /* A is made of whole blocks of so many rows and columns (the unknowns of one vertex): what is
+                             symbolic is done on their graph, which is that many times smaller, and the unknowns of a
+                             block stay together; default 1 */
+    const double *xyz;    /* n / block x 3, a point per block for geometric dissection; borrowed; default NULL */
+    const int32_t *perm; /* length n / block, an ordering of the blocks to inherit; borrowed; default NULL = computed */
+    double pivot_rtol;   /* reject pivot d_k <= pivot_rtol * max|a_ii| (|d_k| for LDL'); unitless; default 0 */
+    sl_factor_kind kind; /* default SL_FACTOR_LLT */
+    int32_t patch;       /* subtrees of at most so many columns are the bottom part, eliminated before all of the top;
+                            default 0 = no bottom part */
     const sl_context *context; /* workers for the ordering; borrowed; default NULL */
 } sl_cholesky_def;
 
 sl_cholesky_def sl_cholesky_default(void);
 
 /* Symbolic phase. A: n x n, lower triangle, sorted columns, n >= 0. On failure *out is NULL. SL_BAD_INPUT (not square,
- * unsorted, not lower), SL_OUT_OF_MEMORY. */
+ * unsorted, not lower, not made of whole blocks), SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status sl_cholesky_analyze(const sl_csc *A, const sl_cholesky_def *def, sl_cholesky **out);
 
 /* Numeric phase; call again when values change but the pattern does not. SL_NOT_POSITIVE_DEFINITE (LL') or SL_SINGULAR

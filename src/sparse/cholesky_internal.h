@@ -23,6 +23,7 @@ typedef struct sl_front_space {
  * postorder; walk lists them in a postorder of the whole tree. */
 struct sl_cholesky {
     int32_t n;
+    int32_t block;         /* of so many columns; supernodes and the rows below them are made of whole ones */
     int64_t pattern_nnz;   /* of A's lower triangle */
     uint64_t pattern_hash; /* so that values are not put into another pattern */
     double pivot_rtol;

@@ -2,15 +2,17 @@
 
 #include <string.h>
 
-/* One entry (owner, other) of the half; which of the two owns the list is what tells upper from lower. */
-static void half_of(const sl_csc *A, const int32_t *place, bool upper, int64_t *next, sl_half *half)
+/* One entry (owner, other) of the half: the larger of the two owns the list in the upper, the smaller in the lower.
+ * Which one that is cannot be foreseen: it is computed, not branched on. */
+static inline void half_of(const sl_csc *A, const int32_t *place, bool upper, int64_t *next, sl_half *half)
 {
     const int32_t n = A->ncols;
     memset(half->first, 0, ((size_t)n + 1) * sizeof *half->first);
     for (int32_t j = 0; j < n; j++) {
         for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
             const int32_t a = place[j], b = place[A->row[p]];
-            half->first[((a > b) == upper ? a : b) + 1]++;
+            const int32_t swap = (a ^ b) & -(int32_t)((a < b) == upper);
+            half->first[(a ^ swap) + 1]++;
         }
     }
     for (int32_t k = 0; k < n; k++) {
@@ -20,8 +22,8 @@ static void half_of(const sl_csc *A, const int32_t *place, bool upper, int64_t *
     for (int32_t j = 0; j < n; j++) {
         for (int64_t p = A->colptr[j] + 1; p < A->colptr[j + 1]; p++) {
             const int32_t a = place[j], b = place[A->row[p]];
-            const int32_t owner = (a > b) == upper ? a : b;
-            half->index[next[owner]++] = owner == a ? b : a;
+            const int32_t swap = (a ^ b) & -(int32_t)((a < b) == upper);
+            half->index[next[a ^ swap]++] = b ^ swap;
         }
     }
 }

@@ -13,12 +13,13 @@ static const struct {
 /* Supernodes before and while being merged. */
 typedef struct merger {
     int32_t count;
-    int32_t *begin;  /* count + 1: first column */
-    int32_t *parent; /* count */
-    int32_t *into;   /* count: the supernode this one went into, itself if none */
-    int32_t *width;  /* columns with all merged into it */
-    int32_t *below;  /* rows under its columns */
-    int64_t *true_entries;
+    int32_t block;         /* columns of A that one of the graph stands for */
+    int32_t *begin;        /* count + 1: first column */
+    int32_t *parent;       /* count */
+    int32_t *into;         /* count: the supernode this one went into, itself if none */
+    int32_t *width;        /* columns with all merged into it */
+    int32_t *below;        /* rows under its columns */
+    int64_t *true_entries; /* of A's factor */
     int32_t *child, *sibling;
 } merger;
 
@@ -64,7 +65,7 @@ static sl_status find_maximal(int32_t n, const int32_t *parent, const int32_t *c
     }
     for (int32_t k = n - 1; k >= 0; k--) {
         m->begin[owner[k]] = k;
-        m->true_entries[owner[k]] += count[k];
+        m->true_entries[owner[k]] += (int64_t)m->block * m->block * count[k] - m->block * (m->block - 1) / 2;
     }
     m->begin[m->count] = n;
     for (int32_t s = 0; s < m->count; s++) {
@@ -81,8 +82,9 @@ cleanup:
 
 static bool worth_merging(const merger *m, int32_t child, int32_t parent)
 {
-    const int64_t width = (int64_t)m->width[child] + m->width[parent];
-    const double stored = (double)width * (double)(width + 1) / 2.0 + (double)width * (double)m->below[parent];
+    const int64_t width = ((int64_t)m->width[child] + m->width[parent]) * m->block;
+    const int64_t below = (int64_t)m->below[parent] * m->block;
+    const double stored = (double)width * (double)(width + 1) / 2.0 + (double)width * (double)below;
     const double zeros = stored - (double)(m->true_entries[child] + m->true_entries[parent]);
     for (size_t k = 0; k < SL_COUNTOF(relaxation); k++) {
         if (width <= relaxation[k].columns) {
@@ -154,9 +156,9 @@ cleanup:
     return status;
 }
 
-sl_status sl_partition_create(int32_t n, const int32_t *parent, const int32_t *count, sl_partition *out)
+sl_status sl_partition_create(int32_t n, int32_t block, const int32_t *parent, const int32_t *count, sl_partition *out)
 {
-    merger m = {0};
+    merger m = {.block = block};
     sl_status status = SL_OK;
     *out = (sl_partition){0};
     SL_TRY(find_maximal(n, parent, count, &m));

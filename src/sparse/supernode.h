@@ -15,9 +15,11 @@ typedef struct sl_partition {
 } sl_partition;
 
 /* Maximal supernodes of the tree (postordered; column counts as in sl_column_counts), then merged upwards where the
- * zeros stored for it stay few. SL_OUT_OF_MEMORY. Source: Liu, Ng, Peyton 1993; Ashcraft, Grimes 1989 (relaxed
+ * zeros stored for it stay few; of the graph of blocks of `block` columns, which is what the zeros are counted in.
+ * SL_OUT_OF_MEMORY. Source: Liu, Ng, Peyton 1993; Ashcraft, Grimes 1989 (relaxed
  * amalgamation). Deviation: any child may be merged, not only the last, since columns are reordered afterwards. */
-SL_NODISCARD sl_status sl_partition_create(int32_t n, const int32_t *parent, const int32_t *count, sl_partition *out);
+SL_NODISCARD sl_status sl_partition_create(int32_t n, int32_t block, const int32_t *parent, const int32_t *count,
+                                           sl_partition *out);
 
 void sl_partition_clear(sl_partition *partition);
 

@@ -185,7 +185,7 @@ static void tree_counts_and_supernodes_agree_with_dense_elimination(void **state
         check_counts(&a, L);
         sl_free(L);
         sl_partition part;
-        assert_int_equal(sl_partition_create(a.n, a.parent, a.count, &part), SL_OK);
+        assert_int_equal(sl_partition_create(a.n, 1, a.parent, a.count, &part), SL_OK);
         check_partition(A, &a, &part);
         sl_partition_clear(&part);
         analysis_clear(&a);
