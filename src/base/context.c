@@ -2,10 +2,25 @@
 
 sl_status sl_report_progress(const sl_context *context, const char *stage, double fraction)
 {
-    if (context == NULL || context->progress == NULL) {
+    if (context == NULL) {
         return SL_OK;
     }
-    return context->progress(context->progress_user, stage, fraction) ? SL_OK : SL_CANCELLED;
+    if (context->cancelled != NULL && context->cancelled(context->cancelled_user)) {
+        return SL_CANCELLED;
+    }
+    const bool go_on = context->progress == NULL || context->progress(context->progress_user, stage, fraction);
+    return go_on ? SL_OK : SL_CANCELLED;
+}
+
+sl_context sl_quiet_context(const sl_context *context)
+{
+    sl_context quiet = {0};
+    if (context != NULL) {
+        quiet = *context;
+        quiet.progress = NULL;
+        quiet.progress_user = NULL;
+    }
+    return quiet;
 }
 
 int32_t sl_chunk_count(int64_t count, int64_t chunk_size)

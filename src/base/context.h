@@ -19,15 +19,23 @@ typedef struct sl_executor {
 /* Returns false to cancel. stage is a short fixed text; fraction in [0, 1]. Only called from the calling thread. */
 typedef bool sl_progress_fn(void *user, const char *stage, double fraction);
 
+/* Returns true once the computation shall end. Called from any thread, often: it should only look at a flag. */
+typedef bool sl_cancelled_fn(void *user);
+
 /* Nullable wherever it is taken: NULL = serial, no progress. */
 typedef struct sl_context {
     const sl_executor *executor; /* NULL = serial */
-    sl_progress_fn *progress;    /* NULL = never reported, never cancelled */
+    sl_progress_fn *progress;    /* NULL = never reported */
     void *progress_user;
+    sl_cancelled_fn *cancelled; /* NULL = by progress alone: then what runs side by side is waited for */
+    void *cancelled_user;
 } sl_context;
 
-/* SL_CANCELLED when the caller's progress function says so, else SL_OK. context may be NULL. */
+/* SL_CANCELLED when one of the caller's functions says so, else SL_OK. context may be NULL. */
 SL_NODISCARD sl_status sl_report_progress(const sl_context *context, const char *stage, double fraction);
+
+/* The context for work that runs on other threads: the same but for progress. context may be NULL. */
+sl_context sl_quiet_context(const sl_context *context);
 
 /* Splits [0, count) into chunks of chunk_size (the last may be shorter) and calls fn for each, in any order and on any
  * worker. Chunk borders depend on count and chunk_size alone, so a reduction per chunk, summed in chunk order, gives

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,15 +16,15 @@
 #include <unistd.h>
 
 /* The one mutable global of the program: a signal handler can reach nothing else. */
-static volatile sig_atomic_t interrupted;
+static atomic_bool interrupted;
 
 static void on_interrupt(int number)
 {
-    if (interrupted != 0) { /* the second Ctrl-C does not wait for the computation to notice the first */
+    if (interrupted) { /* the second Ctrl-C does not wait for the computation to notice the first */
         signal(number, SIG_DFL);
         raise(number);
     }
-    interrupted = 1;
+    interrupted = true;
 }
 
 static bool on_progress(void *user, const char *stage, double fraction)
@@ -39,7 +40,13 @@ static bool on_progress(void *user, const char *stage, double fraction)
         fprintf(stderr, "\r%-12.12s [%s] %3d %%", stage, cells, (int)shown);
         run->bar_shown = shown;
     }
-    return interrupted == 0;
+    return !interrupted;
+}
+
+static bool is_interrupted(void *user)
+{
+    (void)user;
+    return interrupted;
 }
 
 void cli_common_options(cli_run *run, cli_option *options)
@@ -76,7 +83,10 @@ int cli_begin(cli_run *run)
     if (status != SL_OK) {
         return cli_fail(run, status, NULL);
     }
-    run->context = (sl_context){sl_thread_pool_executor(run->pool), on_progress, run};
+    run->context = (sl_context){.executor = sl_thread_pool_executor(run->pool),
+                                .progress = on_progress,
+                                .progress_user = run,
+                                .cancelled = is_interrupted};
     return -1;
 }
 

@@ -130,7 +130,7 @@ sl_status sl_opt_trial_guess(const sl_opt_state *state, sl_opt_trial *trial)
     def.w = state->w;
     def.max_iterations = STEPS;
     def.fixed = s.fixed;
-    status = sl_stretch_minimise(s.patch, &def, NULL, s.uv, NULL);
+    status = sl_stretch_minimise(s.patch, &def, &state->quiet, s.uv, NULL);
     trial->valid = status == SL_OK;
     status = status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_NOT_POSITIVE_DEFINITE ? SL_OK : status;
     sl_opt_measure(state->surface, s.patch, s.uv, &after, NULL);

@@ -67,6 +67,7 @@ typedef struct sl_opt_state {
     const sl_opt_surface *surface;
     const sl_optimize_def *def;
     const sl_context *context;
+    sl_context quiet;  /* for what runs side by side */
     uint8_t *cut;      /* 3 nt, the same for both halfedges of an edge */
     uint8_t *keep;     /* 3 nt: never to be sewn */
     double *uv;        /* 3 nt x 2: of a corner, in its chart's frame */

@@ -1,6 +1,7 @@
 /* Charts laid flat: warm from the UVs at hand where that can be, else from nothing; proven to be embedded. */
-#include "base/memory.h"
 #include "optimize/optimize_internal.h"
+
+#include "base/memory.h"
 #include "overlap/certificate.h"
 #include "param/open.h"
 #include "param/stretch.h"
@@ -159,7 +160,7 @@ sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_
                        bool *embedded)
 {
     sl_status status = SL_OK;
-    attempt a = {.patch = patch, .def = stretch_def(state)};
+    attempt a = {.patch = patch, .context = &state->quiet, .def = stretch_def(state)};
     *embedded = false;
     if (!sl_patch_is_disk(patch)) {
         return SL_OK;
@@ -216,9 +217,9 @@ sl_status sl_opt_sketch(const sl_opt_state *state, sl_opt_chart *chart, sl_stret
     *embedded = false;
     def.relative_decrease = SKETCHED;
     def.workspace = workspace;
-    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, &state->quiet, chart->uv, NULL), &solved));
     if (!solved) {
-        SL_TRY(outcome(sl_stretch_unfold(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+        SL_TRY(outcome(sl_stretch_unfold(chart->patch, &def, &state->quiet, chart->uv, NULL), &solved));
     }
     if (solved) {
         SL_TRY(is_embedded(chart, embedded));
@@ -234,7 +235,7 @@ sl_status sl_opt_finish(const sl_opt_state *state, sl_opt_chart *chart, sl_stret
     bool solved;
     *embedded = false;
     def.workspace = workspace;
-    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, NULL, chart->uv, NULL), &solved));
+    SL_TRY(outcome(sl_stretch_minimise(chart->patch, &def, &state->quiet, chart->uv, NULL), &solved));
     if (solved) {
         SL_TRY(is_embedded(chart, embedded));
     }

@@ -155,7 +155,7 @@ sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_tr
     def.w = state->w;
     def.max_iterations = steps;
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        status = sl_stretch_minimise(trial->to[k].patch, &def, NULL, trial->to[k].uv, NULL);
+        status = sl_stretch_minimise(trial->to[k].patch, &def, &state->quiet, trial->to[k].uv, NULL);
         if (status == SL_BAD_INPUT || status == SL_SINGULAR || status == SL_NOT_POSITIVE_DEFINITE) {
             trial->valid = false;
             status = SL_OK;

@@ -108,8 +108,7 @@ static void run_range(void *user, int64_t begin, int64_t end, int32_t chunk)
 
 sl_status sl_run_jobs(const sl_recursion *recursion, const sl_context *context, sl_job_fn *fn, sl_job_list *list)
 {
-    const sl_context quiet = {.executor =
-                                  context != NULL ? context->executor : NULL}; /* progress: calling thread only */
+    const sl_context quiet = sl_quiet_context(context); /* progress: calling thread only */
     sl_recursion r = *recursion;
     r.context = list->count == 1 ? context : &quiet;
     job_range range = {&r, fn, list->job};

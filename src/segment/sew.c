@@ -274,7 +274,7 @@ sl_status sl_sew_charts(sl_mesh *work, const sl_mesh *original, const sl_triangu
                         sl_job_list *charts, int32_t *merges)
 {
     sl_status status = SL_OK;
-    const sl_context quiet = {.executor = context != NULL ? context->executor : NULL};
+    const sl_context quiet = sl_quiet_context(context);
     const int64_t limit = ATTEMPTS_A_CHART * charts->count;
     sew_state s = {.work = work, .charts = charts};
     *merges = 0;

@@ -42,7 +42,9 @@ sl_status sl_view_open(sl_session *session, const sl_meshfile *file, const sl_vi
     server->file = file;
     server->def = *def;
     server->outer = context;
-    server->context = (sl_context){context != NULL ? context->executor : NULL, on_progress, server};
+    server->context = sl_quiet_context(context);
+    server->context.progress = on_progress;
+    server->context.progress_user = server;
     server->locks = mtx_init(&server->lock, mtx_plain) == thrd_success && cnd_init(&server->wake) == thrd_success;
     if (!server->locks) {
         SL_TRY(SL_OUT_OF_MEMORY);

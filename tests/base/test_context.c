@@ -177,6 +177,30 @@ static void progress_reaches_the_caller_and_can_cancel(void **state)
     assert_string_equal(log.stage, "flatten");
 }
 
+static bool is_set(void *user)
+{
+    return *(const bool *)user;
+}
+
+static void a_quiet_context_can_be_cancelled_and_reports_nothing(void **state)
+{
+    (void)state;
+    bool stop = false;
+    progress_log log = {0};
+    const sl_executor executor = {.workers = 1};
+    const sl_context context = {&executor, stop_at_half, &log, is_set, &stop};
+    const sl_context quiet = sl_quiet_context(&context), none = sl_quiet_context(NULL);
+    assert_true(quiet.executor == &executor && none.executor == NULL);
+    assert_int_equal(sl_report_progress(&quiet, "cut", 0.9), SL_OK);
+    assert_int_equal(sl_report_progress(&none, "cut", 0.9), SL_OK);
+    assert_int_equal(log.calls, 0);
+    stop = true;
+    assert_int_equal(sl_report_progress(&quiet, "cut", 0.1), SL_CANCELLED);
+    assert_int_equal(sl_report_progress(&context, "cut", 0.1), SL_CANCELLED);
+    assert_int_equal(sl_report_progress(&none, "cut", 0.1), SL_OK);
+    assert_int_equal(log.calls, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -186,6 +210,7 @@ int main(void)
         cmocka_unit_test(a_pool_that_never_worked_can_be_freed),
         cmocka_unit_test(chunk_counts_round_up),
         cmocka_unit_test(progress_reaches_the_caller_and_can_cancel),
+        cmocka_unit_test(a_quiet_context_can_be_cancelled_and_reports_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

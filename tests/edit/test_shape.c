@@ -378,7 +378,7 @@ static void a_cancelled_action_leaves_no_trace(void **state)
     sheet_make(&t);
     sl_session *s = open_polygons(&t.polygons, "{\"do\":\"open\"}", NULL);
     int32_t asked = 0;
-    const sl_context context = {NULL, never, &asked};
+    const sl_context context = {.progress = never, .progress_user = &asked};
     const uint64_t before = sl_session_hash(s);
     sl_action a = sl_action_default(SL_ACTION_ANGLE);
     assert_int_equal(sl_action_set_items(&a, 2, (const int32_t[]){0, 0}), SL_OK);
@@ -403,7 +403,7 @@ static void the_number_of_workers_changes_no_byte(void **state)
         assert_int_equal(sl_generator_find("hand")->make(5, 0, &hand), SL_OK);
         sl_generated_polygons(hand, &polygons);
         assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
-        const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+        const sl_context context = {.executor = sl_thread_pool_executor(pool)};
         sl_session *s = NULL;
         const sl_atlas_def def = small_def();
         sl_action open = sl_action_default(SL_ACTION_OPEN);

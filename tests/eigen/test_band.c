@@ -120,7 +120,7 @@ static void bands_refuse_and_may_be_cancelled(void **state)
     int32_t limit = 1;
     for (; status == SL_CANCELLED && limit < 2000; limit += 7) {
         int32_t calls = limit;
-        const sl_context context = {NULL, refuse, &calls};
+        const sl_context context = {.progress = refuse, .progress_user = &calls};
         status = sl_lanczos_bands(A, &def, &context, lambda, vectors, NULL, NULL);
     }
     assert_int_equal(status, SL_OK);

@@ -157,7 +157,7 @@ static void progress_may_cancel_at_any_call(void **state)
     int32_t limit = 1;
     for (; limit < 1000 && status == SL_CANCELLED; limit++) {
         patience p = {0, limit};
-        const sl_context context = {NULL, lose_patience, &p};
+        const sl_context context = {.progress = lose_patience, .progress_user = &p};
         status = sl_lanczos_solve(A, &def, &context, lambda, vectors, NULL, NULL);
     }
     assert_int_equal(status, SL_OK);

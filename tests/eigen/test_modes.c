@@ -203,7 +203,7 @@ static void results_do_not_depend_on_workers(void **state)
             sl_thread_pool *pool = NULL;
             assert_non_null(vectors);
             assert_int_equal(sl_thread_pool_create(workers, &pool), SL_OK);
-            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            const sl_context context = {.executor = sl_thread_pool_executor(pool)};
             assert_int_equal(sl_lanczos_solve(A, &def, &context, lambda, vectors, NULL, NULL), SL_OK);
             assert_memory_equal(lambda, p.lambda, sizeof lambda);
             assert_memory_equal(vectors, p.vectors, COUNT * (size_t)A->ncols * sizeof *vectors);

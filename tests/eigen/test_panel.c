@@ -183,7 +183,7 @@ static void project_and_subtract(sl_precision precision)
     for (size_t k = 0; k < SL_COUNTOF(workers); k++) {
         sl_thread_pool *pool = NULL;
         assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
-        const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+        const sl_context context = {.executor = sl_thread_pool_executor(pool)};
         double H[2][16 * W8], G[W8 * W8];
         double *X = sl_copy(W0, W8 * ROWS, sizeof *X), *Y = sl_copy(V, W8 * ROWS, sizeof *Y);
         assert_true(X && Y);

@@ -1,6 +1,8 @@
 /* Whole searches: their targets, their charts, threads, scales, options; and the steps of one. */
 #include "optimize/checks.h"
 
+#include <stdatomic.h>
+
 static sl_mesh *shape(test_rng *rng, int kind)
 {
     switch (kind % 4) {
@@ -288,6 +290,47 @@ static void cancelling_leaves_the_mesh_as_it_was(void **state)
     sl_triangulation_free(t);
 }
 
+typedef struct deadline {
+    atomic_int left;     /* looks at the flag before it is set */
+    atomic_bool is_over; /* it was set */
+    atomic_int late;     /* looks at it after that */
+} deadline;
+
+static bool is_over(void *user)
+{
+    deadline *d = user;
+    d->late += d->is_over;
+    d->is_over = d->is_over || --d->left < 0;
+    return d->is_over;
+}
+
+/* Each solve looks; those that run beside the one that hears it first hear it, too. */
+static void solves_that_run_side_by_side_hear_that_all_is_over(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xca11);
+    sl_mesh *mesh = shape(&rng, 0);
+    sl_triangulation *t = test_triangulate(mesh);
+    const sl_optimize_def def = sl_optimize_default();
+    const sl_segment_def segment = sl_segment_default();
+    for (int32_t threads = 1; threads <= 3; threads += 2) {
+        sl_thread_pool *pool = NULL;
+        assert_int_equal(sl_thread_pool_create(threads, &pool), SL_OK);
+        for (int after = 0; after < 500; after += after / 2 + 1) {
+            deadline d = {.left = after};
+            const sl_context context = {
+                .executor = sl_thread_pool_executor(pool), .cancelled = is_over, .cancelled_user = &d};
+            sl_segmentation *s = (sl_segmentation *)&rng;
+            assert_int_equal(sl_optimize_segment(mesh, t, &segment, &def, &context, &s, NULL), SL_CANCELLED);
+            assert_null(s);
+            assert_true(d.late <= 80); /* at most one for each of the trials that run side by side */
+        }
+        sl_thread_pool_free(pool);
+    }
+    sl_mesh_free(mesh);
+    sl_triangulation_free(t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -301,6 +344,7 @@ int main(void)
         cmocka_unit_test(sewing_keeps_the_targets_and_shortens_the_seams),
         cmocka_unit_test(scaling_by_a_power_of_two_changes_no_byte),
         cmocka_unit_test(cancelling_leaves_the_mesh_as_it_was),
+        cmocka_unit_test(solves_that_run_side_by_side_hear_that_all_is_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,7 +87,7 @@ static void a_frame_has_the_same_bytes_for_any_number_of_threads(void **state)
         for (int32_t workers = 1; workers <= 5; workers++) {
             sl_thread_pool *pool = NULL;
             assert_int_equal(sl_thread_pool_create(workers, &pool), SL_OK);
-            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            const sl_context context = {.executor = sl_thread_pool_executor(pool)};
             memset(again, workers, 4 * SIDE * SIDE);
             assert_int_equal(sl_frame_draw(t.frame, &t.camera, &style, SIDE, SIDE, &context, again), SL_OK);
             assert_memory_equal(first, again, 4 * SIDE * SIDE);

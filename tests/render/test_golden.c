@@ -64,7 +64,7 @@ static sl_image *draw(const sl_scene *scene, view_kind kind, int32_t workers)
     picture.value_name = "value";
     view.elevation = 35.0;
     assert_int_equal(sl_thread_pool_create(workers, &pool), SL_OK);
-    const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
     const sl_status status = kind == VIEW_MODEL   ? sl_render_3d(scene, &view, &picture, &context, &image, NULL)
                              : kind == VIEW_ATLAS ? sl_render_uv(scene, &picture, &context, &image, NULL)
                                                   : sl_render_pair(scene, &view, &picture, &context, &image, NULL);

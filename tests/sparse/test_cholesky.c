@@ -394,7 +394,7 @@ static void two_threads_solve_with_one_factor(void **state)
     assert_true(Y != NULL && job.work != NULL);
     sl_thread_pool *pool = NULL;
     assert_int_equal(sl_thread_pool_create(2, &pool), SL_OK);
-    const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
     sl_parallel_for(&context, CHUNKS * SIDES, SIDES, solve_one, &job);
     job.X = Y;
     sl_parallel_for(NULL, CHUNKS * SIDES, SIDES, solve_one, &job);

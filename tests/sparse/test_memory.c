@@ -100,7 +100,7 @@ static void workers_survive_failed_allocations(void **state)
     test_rng rng = test_rng_seed(0x3e4);
     sl_thread_pool *pool = NULL;
     assert_int_equal(sl_thread_pool_create(2, &pool), SL_OK);
-    const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
     subject s = {.A = random_spd(MATRIX_GRID, 110 * 110, 0.3, &rng), .def = sl_cholesky_default()};
     int32_t *perm = sl_alloc(s.A->ncols, sizeof *perm);
     assert_non_null(perm);

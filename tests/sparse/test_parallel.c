@@ -75,7 +75,7 @@ static void any_number_of_workers_orders_alike(void **state)
         for (size_t k = 0; k < SL_COUNTOF(workers); k++) {
             sl_thread_pool *pool = NULL;
             assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
-            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            const sl_context context = {.executor = sl_thread_pool_executor(pool)};
             memset(shared, -1, (size_t)n * sizeof *shared);
             assert_int_equal(sl_order_with(A, SL_ORDER_NESTED_DISSECTION, points == 1 ? xyz : NULL, &context, shared),
                              SL_OK);
@@ -110,7 +110,7 @@ static void any_number_of_workers_gives_the_same_bytes(void **state)
         for (size_t k = 0; k < SL_COUNTOF(workers); k++) {
             sl_thread_pool *pool = NULL;
             assert_int_equal(sl_thread_pool_create(workers[k], &pool), SL_OK);
-            const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+            const sl_context context = {.executor = sl_thread_pool_executor(pool)};
             memcpy(Y, B, (size_t)size * sizeof *Y);
             run(F, A, sigma, &context, Y, w);
             assert_memory_equal(F->L, L, (size_t)F->panel[F->supernodes] * sizeof *L);
@@ -184,7 +184,7 @@ static void a_cancelled_factorisation_may_be_repeated(void **state)
     assert_int_equal(sl_cholesky_analyze(A, NULL, &F), SL_OK);
     for (int32_t left = 0; left < 2; left++) {
         patience p = {left, 0};
-        const sl_context context = {NULL, wait_a_while, &p};
+        const sl_context context = {.progress = wait_a_while, .progress_user = &p};
         const sl_status want = left == 0 ? SL_CANCELLED : SL_OK;
         assert_int_equal(sl_cholesky_factor_shifted(F, A, 0.0, &context, NULL), want);
         assert_int_equal(p.asked, 1);
@@ -205,7 +205,7 @@ static void the_first_bad_pivot_is_told_whatever_the_workers(void **state)
     sl_cholesky *F = analysis_of(A, xyz, SL_FACTOR_LLT);
     sl_thread_pool *pool = NULL;
     assert_int_equal(sl_thread_pool_create(3, &pool), SL_OK);
-    const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
     for (int trial = 0; trial < 8; trial++) {
         const double sigma = test_uniform(&rng, 0.01, 0.5);
         int32_t alone = -1, shared = -2;

@@ -79,7 +79,7 @@ static sl_theorem_run *run(sl_theorem_run_def def, int32_t threads)
     sl_theorem_run *out;
     openblas_set_num_threads(1);
     assert_int_equal(sl_thread_pool_create(threads, &pool), SL_OK);
-    const sl_context context = {sl_thread_pool_executor(pool), NULL, NULL};
+    const sl_context context = {.executor = sl_thread_pool_executor(pool)};
     assert_int_equal(sl_theorem_run_all(&def, &context, &out), SL_OK);
     sl_thread_pool_free(pool);
     return out;
@@ -141,7 +141,7 @@ static void a_run_can_be_cancelled(void **state)
     def.graphs = 600;
     for (int32_t patience = 0; patience < 2; patience++) {
         int32_t left = patience;
-        const sl_context context = {NULL, refuse, &left};
+        const sl_context context = {.progress = refuse, .progress_user = &left};
         sl_theorem_run *out;
         assert_int_equal(sl_theorem_run_all(&def, &context, &out), SL_CANCELLED);
         assert_null(out);
