@@ -9,15 +9,17 @@
 #include <math.h>
 #include <string.h>
 
-static const double SETTLED = 1e-4;             /* relative decrease at which a chart is solved */
-static const double SKETCHED = 1e-2;            /* ... well enough to see whether it is worth more */
-static const double OPEN_SHARE = 0x1p-10;       /* of a border edge: room made between the banks of a fresh cut */
-static const double W_LOW = -5.0, W_HIGH = 1.0; /* lower ones hardly gain angle, and what cuts promise there is noise */
+static const double SETTLED = 1e-4;       /* relative decrease at which a chart is solved */
+static const double SKETCHED = 1e-2;      /* ... well enough to see whether it is worth more */
+static const double OPEN_SHARE = 0x1p-10; /* of a border edge: room made between the banks of a fresh cut */
+static const double W_HIGH = 1.0;
+static const double W_LOW = -5.0; /* at coarse targets lower ones hardly gain angle, and what cuts promise is noise */
+static const double FINE_ANGLE = 1.1, MOST_LOWER = 40.0; /* below that target they do gain: so many times W_LOW */
 static const int BALANCE_ROUNDS = 6;
 static const double BALANCED = 0.02;     /* the two shares of the budgets agree within this ratio */
 static const double BALANCED_FAR = 0.15; /* ... while their mean is above FAR_SHARE */
 static const double FAR_SHARE = 1.3;
-static const double FIRST_STEP = 0.25;
+static const double FIRST_STEP = 0.25; /* of the weight; in proportion to it below W_LOW */
 
 static sl_stretch_def stretch_def(const sl_opt_state *state)
 {
@@ -352,6 +354,14 @@ static double tolerance(const sl_opt_state *state)
     return q * r > FAR_SHARE * FAR_SHARE ? BALANCED_FAR : BALANCED;
 }
 
+/* The squares of the singular values' differences, which the mean of s1/s2 - 1 goes with, weigh 1 - w/2 times what
+ * those of the areas do. */
+static double lowest_weight(const sl_optimize_def *def)
+{
+    const double finer = (FINE_ANGLE - 1.0) / fmax(def->target_angle - 1.0, 1e-9);
+    return W_LOW * fmin(fmax(finer * finer, 1.0), MOST_LOWER);
+}
+
 /* The next weight: where the secant through the last two points vanishes, if that is between the bounds; not more than
  * twice as far as the last step. */
 static double next_weight(double w, double f, double w0, double f0, double low, double high)
@@ -372,17 +382,19 @@ sl_status sl_opt_balance(sl_opt_state *state)
 {
     sl_status status = SL_OK;
     const double since = sl_opt_clock();
-    double low = W_LOW, high = W_HIGH, w0 = NAN, f0 = NAN;
+    const double lowest = lowest_weight(state->def);
+    double low = lowest, high = W_HIGH, w0 = NAN, f0 = NAN;
     for (int k = 0; k < BALANCE_ROUNDS; k++) {
         const double f = imbalance(state), w = state->w;
         bool all;
-        if (fabs(f) < tolerance(state) || (f > 0.0 && w >= W_HIGH) || (f < 0.0 && w <= W_LOW)) {
+        if (fabs(f) < tolerance(state) || (f > 0.0 && w >= W_HIGH) || (f < 0.0 && w <= lowest)) {
             break;
         }
         low = f > 0.0 ? w : low; /* too much stretch: w rises */
         high = f > 0.0 ? high : w;
         if (isnan(w0)) {
-            state->w = f > 0.0 ? fmin(high, w + FIRST_STEP) : fmax(low, w - FIRST_STEP);
+            const double step = FIRST_STEP * fmax(w / W_LOW, 1.0);
+            state->w = f > 0.0 ? fmin(high, w + step) : fmax(low, w - step);
         } else {
             state->w = next_weight(w, f, w0, f0, low, high);
         }

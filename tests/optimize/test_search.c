@@ -217,6 +217,34 @@ static void a_first_cut_that_is_protected_stays(void **state)
     test_surface_clear(&s);
 }
 
+/* Stretch to spare, angles short: coarse targets keep the weight where angles are still cheap, fine ones do not. */
+static void fine_angles_take_weights_that_coarse_ones_never_do(void **state)
+{
+    (void)state;
+    static const double angle[] = {1.2, 1.01};
+    test_rng rng = test_rng_seed(0xba1);
+    test_surface s = test_surface_of(shape(&rng, 0));
+    double lowest[2], mean[2];
+    for (int k = 0; k < 2; k++) {
+        sl_optimize_def def = sl_optimize_default();
+        def.target_stretch = 1e6;
+        def.target_angle = angle[k];
+        sl_opt_state opt = test_started(&s, &def);
+        sl_opt_total total;
+        for (int round = 0; round < 4; round++) {
+            assert_int_equal(sl_opt_balance(&opt), SL_OK);
+        }
+        test_check_state(&opt);
+        sl_opt_totals(&opt, &total);
+        lowest[k] = opt.w;
+        mean[k] = total.angle;
+        sl_opt_state_clear(&opt);
+    }
+    assert_true(lowest[0] >= -5.0 && lowest[1] < -20.0 && lowest[1] >= -200.0);
+    assert_true(mean[1] < mean[0]);
+    test_surface_clear(&s);
+}
+
 static void sewing_keeps_the_targets_and_shortens_the_seams(void **state)
 {
     (void)state;
@@ -341,6 +369,7 @@ int main(void)
         cmocka_unit_test(a_target_out_of_reach_is_reported),
         cmocka_unit_test(a_bound_on_sewings_ends_the_same_search_earlier),
         cmocka_unit_test(a_first_cut_that_is_protected_stays),
+        cmocka_unit_test(fine_angles_take_weights_that_coarse_ones_never_do),
         cmocka_unit_test(sewing_keeps_the_targets_and_shortens_the_seams),
         cmocka_unit_test(scaling_by_a_power_of_two_changes_no_byte),
         cmocka_unit_test(cancelling_leaves_the_mesh_as_it_was),
