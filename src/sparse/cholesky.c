@@ -5,6 +5,7 @@
 #include "sparse/cholesky_internal.h"
 #include "sparse/elimination.h"
 #include "sparse/entries.h"
+#include "sparse/extend_add.h"
 #include "sparse/front.h"
 #include "sparse/supernode.h"
 #include "sparse/tasks.h"
@@ -241,7 +242,7 @@ static void list_rows_below(sl_cholesky *F, const scratch *w, int32_t *mark, int
     }
 }
 
-/* Doubles on the stacks of update matrices at their highest, and the most rows that meet in one supernode. */
+/* Doubles on the stacks of update matrices at their highest. */
 static void find_largest(sl_cholesky *F)
 {
     int64_t top = 0, deepest = 0;
@@ -249,12 +250,9 @@ static void find_largest(sl_cholesky *F)
         const int32_t s = F->walk[k];
         const int64_t own = sl_packed_size(sl_supernode_below(F, s));
         deepest = top + own > deepest ? top + own : deepest;
-        int32_t family = 0;
         for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
             top -= sl_packed_size(sl_supernode_below(F, c));
-            family += sl_supernode_below(F, c);
         }
-        F->max_family = family > F->max_family ? family : F->max_family;
         top += own;
     }
     F->max_update = deepest;
@@ -266,15 +264,18 @@ static sl_status analyze_rows(sl_cholesky *F, const sl_csc *A, scratch *w)
         return SL_OUT_OF_MEMORY; /* entry_from and entry_to */
     }
     F->below = sl_alloc(F->below_first[F->supernodes], sizeof *F->below);
+    F->relative = sl_alloc(F->below_first[F->supernodes], sizeof *F->relative);
     F->entry_first = sl_alloc((int64_t)F->supernodes + 1, sizeof *F->entry_first);
     F->entry_from = sl_alloc(F->pattern_nnz, sizeof *F->entry_from);
     F->entry_to = sl_alloc(F->pattern_nnz, sizeof *F->entry_to);
-    if (F->below == NULL || F->entry_first == NULL || F->entry_from == NULL || F->entry_to == NULL) {
+    if (F->below == NULL || F->relative == NULL || F->entry_first == NULL || F->entry_from == NULL ||
+        F->entry_to == NULL) {
         return SL_OUT_OF_MEMORY;
     }
     int32_t *owner = w->count, *mark = w->work;
     sl_half_upper(w->graph, w->place, w->next, &w->half);
     list_rows_below(F, w, mark, owner);
+    sl_match_rows(F);
     sl_map_entries(F, A, w->graph, w->place, owner, w->next);
     sl_block_expand(w->n, F->block, F->perm);
     sl_block_expand(w->n, F->block, w->place);
@@ -340,7 +341,7 @@ int64_t sl_cholesky_factor_bytes(const sl_cholesky *F, int64_t *kept)
     const int64_t stays = F->panel[F->supernodes] * (int64_t)sizeof *F->L + signs;
     const int64_t doubles = F->max_update + sl_front_spare(F->max_width);
     *kept = stays;
-    return stays + doubles * (int64_t)sizeof(double) + F->max_family * (int64_t)sizeof(int32_t);
+    return stays + doubles * (int64_t)sizeof(double);
 }
 
 int32_t sl_cholesky_top_first(const sl_cholesky *F)
@@ -374,6 +375,7 @@ void sl_cholesky_free(sl_cholesky *F)
     sl_free(F->parent);
     sl_free(F->below_first);
     sl_free(F->below);
+    sl_free(F->relative);
     sl_free(F->panel);
     sl_free(F->walk);
     sl_free(F->entry_first);

@@ -12,9 +12,8 @@
 
 /* Memory of one walk over the fronts. */
 typedef struct sl_front_space {
-    double *updates;   /* stacks of update matrices */
-    double *spare;     /* of the kernels */
-    int32_t *relative; /* max_family: rows of the children in their parent's numbering */
+    double *updates; /* stacks of update matrices */
+    double *spare;   /* of the kernels */
 } sl_front_space;
 
 /* Supernode s owns columns first[s] .. first[s + 1] - 1 of L. Its panel (laid out as kernels.h says) has one row for
@@ -39,6 +38,7 @@ struct sl_cholesky {
     int32_t *walk;        /* supernodes */
     int64_t *below_first; /* supernodes + 1 */
     int32_t *below;       /* -1 - k for the k-th row outside of the supernode's task */
+    int32_t *relative;    /* like below: the same rows as numbers within the panel of the parent; none of a root's */
     int64_t *panel;       /* supernodes + 1: where a panel begins in L */
     double *L;            /* NULL before the first factorisation */
     int8_t *sign;         /* n: signs of D, NULL for LL' or before the first factorisation */
@@ -54,7 +54,6 @@ struct sl_cholesky {
     int32_t max_below;  /* rows of the largest update matrix */
     int64_t max_panel;  /* doubles of the largest panel */
     int64_t max_update; /* doubles of the stack of update matrices at its highest */
-    int32_t max_family; /* rows of all update matrices that go into one supernode */
     int32_t *child;     /* supernodes: last child in the walk, -1 = leaf */
     int32_t *sibling;   /* supernodes: next child of the same parent, backwards in the walk */
     bool *odd;          /* supernodes: at odd depth in the tree */
@@ -79,13 +78,6 @@ static inline int32_t sl_supernode_width(const sl_cholesky *F, int32_t s)
 static inline int32_t sl_supernode_below(const sl_cholesky *F, int32_t s)
 {
     return (int32_t)(F->below_first[s + 1] - F->below_first[s]);
-}
-
-/* Rows below task root or crown supernode s, by their true numbers. */
-static inline const int32_t *sl_true_rows(const sl_cholesky *F, int32_t s)
-{
-    const int32_t t = F->task[s];
-    return t == -1 ? F->below + F->below_first[s] : F->outside + F->outside_first[t];
 }
 
 #endif

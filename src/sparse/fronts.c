@@ -1,6 +1,7 @@
 /* Multifrontal factorisation. Source: Duff, Reid 1983; Liu 1992. A supernode's panel takes A's entries and its
  * children's update matrices, is factored, and leaves its own update matrix for its parent. */
 #include "base/memory.h"
+#include "sparse/extend_add.h"
 #include "sparse/front.h"
 
 #include <string.h>
@@ -26,9 +27,8 @@ typedef struct walker {
 sl_status sl_front_space_init(const sl_cholesky *F, int64_t room, sl_front_space *space)
 {
     *space = (sl_front_space){sl_alloc(room, sizeof *space->updates),
-                              sl_alloc(sl_front_spare(F->max_width), sizeof *space->spare),
-                              sl_alloc(F->max_family, sizeof *space->relative)};
-    if (space->updates == NULL || space->spare == NULL || space->relative == NULL) {
+                              sl_alloc(sl_front_spare(F->max_width), sizeof *space->spare)};
+    if (space->updates == NULL || space->spare == NULL) {
         sl_front_space_clear(space);
         return SL_OUT_OF_MEMORY;
     }
@@ -39,7 +39,6 @@ void sl_front_space_clear(sl_front_space *space)
 {
     sl_free(space->updates);
     sl_free(space->spare);
-    sl_free(space->relative);
     *space = (sl_front_space){0};
 }
 
@@ -120,85 +119,6 @@ static void scatter_entries(const sl_front_job *job, int32_t s, double *panel)
     }
 }
 
-/* relative[i] = number of child c's i-th row within the panel of its parent s. Both lists are in the same order. */
-static void match_rows(const sl_cholesky *F, int32_t c, int32_t s, int32_t *relative)
-{
-    const int32_t rows = sl_supernode_below(F, c), width = sl_supernode_width(F, s);
-    const int32_t *row = F->task[c] != F->task[s] ? sl_true_rows(F, c) : F->below + F->below_first[c];
-    const int32_t *to = F->below + F->below_first[s];
-    int32_t i = 0;
-    for (; i < rows && row[i] >= 0 && row[i] < F->first[s + 1]; i++) {
-        relative[i] = row[i] - F->first[s];
-    }
-    for (int32_t k = 0; i < rows; i++) {
-        while (to[k] != row[i]) {
-            k++;
-        }
-        relative[i] = width + k;
-    }
-}
-
-static int32_t columns_in_panel(const int32_t *relative, int32_t rows, int32_t width)
-{
-    int32_t count = 0;
-    while (count < rows && relative[count] < width) {
-        count++;
-    }
-    return count;
-}
-
-/* Rows of a slab around row i of `rows`. */
-static int32_t slab_rows(int32_t rows, int32_t i)
-{
-    const int32_t left = rows - i / SL_SLAB * SL_SLAB;
-    return left < SL_SLAB ? left : SL_SLAB;
-}
-
-static void add_strided(const double *from, const int32_t *relative, int32_t count, double *to, int32_t stride)
-{
-    for (int32_t k = 0; k < count; k++) {
-        to[(int64_t)relative[k] * stride] += from[k];
-    }
-}
-
-/* Those columns of a child's update matrix U that s owns. */
-static void add_to_panel(const sl_cholesky *F, const double *U, int32_t rows, const int32_t *relative, int32_t s,
-                         double *panel)
-{
-    const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
-    const int32_t owned = columns_in_panel(relative, rows, width);
-    double *lower = panel + sl_own_size(width);
-    for (int32_t i = 0; i < owned; i++) {
-        add_strided(U + sl_packed_size(i), relative, i + 1, panel + sl_own_place(width, relative[i], 0),
-                    slab_rows(width, relative[i]));
-    }
-    for (int32_t i = owned; i < rows; i++) {
-        const int32_t row = relative[i] - width;
-        add_strided(U + sl_packed_size(i), relative, owned, lower + sl_below_place(width, below, row, 0),
-                    slab_rows(below, row));
-    }
-}
-
-/* The others, to the update matrix of s. */
-static void add_to_update(const double *U, int32_t rows, const int32_t *relative, int32_t width, double *own)
-{
-    const int32_t owned = columns_in_panel(relative, rows, width);
-    for (int32_t i = owned; i < rows; i++) {
-        const double *from = U + sl_packed_size(i);
-        double *to = own + sl_packed_size(relative[i] - width) - width;
-        if (relative[i] - relative[owned] == i - owned) { /* no gaps */
-            to += relative[owned] - owned;
-            for (int32_t k = owned; k <= i; k++) {
-                to[k] += from[k];
-            }
-            continue;
-        }
-        for (int32_t k = owned; k <= i; k++) {
-            to[relative[k]] += from[k];
-        }
-    }
-}
-
 /* A part of a front for sl_parallel_for. */
 typedef struct shared_front {
     const sl_kernels *kernels;
@@ -253,14 +173,11 @@ static int32_t factor_supernode(walker *w, int32_t s)
     const int32_t width = sl_supernode_width(F, s), below = sl_supernode_below(F, s);
     double *panel = job->L != NULL ? job->L + F->panel[s] : w->panel, *own = push_update(w, s);
     int8_t *sign = job->sign != NULL ? job->sign + F->first[s] : NULL;
-    int32_t *relative = w->space->relative;
     int64_t depth = 0;
     memset(panel, 0, (size_t)(F->panel[s + 1] - F->panel[s]) * sizeof *panel);
     scatter_entries(job, s, panel);
     for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
-        match_rows(F, c, s, relative);
-        add_to_panel(F, find_update(w, c, &depth), sl_supernode_below(F, c), relative, s, panel);
-        relative += sl_supernode_below(F, c);
+        sl_extend_panel(F, c, find_update(w, c, &depth), panel);
     }
     shared_front f = {F->kernels, panel, w->space->spare, own, sign, width, below, 0};
     const int32_t bad = factor_panel(w, &f, job->pivoting);
@@ -268,11 +185,9 @@ static int32_t factor_supernode(walker *w, int32_t s)
         return F->first[s] + bad;
     }
     sl_parallel_for(sharing(w, &f), sl_slab_pairs(below), 2, update_some, &f);
-    relative = w->space->relative;
     depth = 0;
     for (int32_t c = F->child[s]; c != -1; c = F->sibling[c]) {
-        add_to_update(find_update(w, c, &depth), sl_supernode_below(F, c), relative, width, own);
-        relative += sl_supernode_below(F, c);
+        sl_extend_update(F, c, find_update(w, c, &depth), own);
     }
     pop_updates(w, s);
     if (job->panel_done != NULL) {
