@@ -101,7 +101,14 @@ SL_NODISCARD sl_status sl_stretch_store_system(sl_stretch_store *store, const sl
 
 /* Where entry (i, j) of a triangle's 6 x 6 Hessian stands among its SL_ELEMENT; i, j = 2 corner + (0 for u, 1 for v).
  */
-int sl_stretch_entry(int i, int j);
+static inline int sl_stretch_entry(int i, int j)
+{
+    static const int place[6][6] = {
+        {0, 1, 9, 10, 17, 19},  {1, 2, 11, 12, 18, 20}, {9, 11, 3, 4, 13, 14},
+        {10, 12, 4, 5, 15, 16}, {17, 18, 13, 15, 6, 7}, {19, 20, 14, 16, 7, 8},
+    };
+    return place[i][j];
+}
 
 /* Replaces the rest shape of a triangle by one nearer to its image, if a logarithm of a singular value of J exceeds
  * cap: J and the gradients g of its hat functions become those of the new shape. d > 0. False when nothing was done.

@@ -12,15 +12,6 @@ static const double SHIFTS[] = {1e-10, 1e-7, 1e-4, 1e-2};
 
 enum { CORNER_UNKNOWNS = 6 };
 
-int sl_stretch_entry(int i, int j)
-{
-    static const int place[CORNER_UNKNOWNS][CORNER_UNKNOWNS] = {
-        {0, 1, 9, 10, 17, 19},  {1, 2, 11, 12, 18, 20}, {9, 11, 3, 4, 13, 14},
-        {10, 12, 4, 5, 15, 16}, {17, 18, 13, 15, 6, 7}, {19, 20, 14, 16, 7, 8},
-    };
-    return place[i][j];
-}
-
 /* The graph of the blocks of unknowns that triangles couple: those above block i are hi[first[i] .. end[i] - 1],
  * ascending. */
 typedef struct block_graph {
@@ -35,9 +26,13 @@ static int32_t unknown_of(const sl_stretch_freedom *freedom, int32_t v, int32_t 
 }
 
 /* The blocks of triangle t, -1 = none: three of two unknowns, or six of one. */
-static int32_t blocks_of(const sl_patch *patch, const sl_stretch_freedom *freedom, int32_t t,
-                         int32_t block[CORNER_UNKNOWNS])
+static inline int32_t blocks_of(const sl_patch *patch, const sl_stretch_freedom *freedom, int32_t t,
+                                int32_t block[CORNER_UNKNOWNS])
 {
+    if (freedom->unknown == NULL) {
+        memcpy(block, &patch->tri[3 * (int64_t)t], 3 * sizeof *block);
+        return 3;
+    }
     const int32_t each = 2 / freedom->block;
     for (int32_t i = 0; i < 3 * each; i++) {
         const int32_t u = unknown_of(freedom, patch->tri[3 * t + i / each], i % each);
@@ -46,22 +41,36 @@ static int32_t blocks_of(const sl_patch *patch, const sl_stretch_freedom *freedo
     return 3 * each;
 }
 
-/* Counts (hi == NULL) or lists the pairs of blocks in triangles, by the lower one. */
+/* Counts (hi == NULL) or lists a pair of blocks by the lower one. */
+static inline void list_pair(int32_t a, int32_t b, int64_t *next, int32_t *hi)
+{
+    const int32_t lo = a < b ? a : b;
+    if (lo < 0 || a == b) {
+        return;
+    }
+    if (hi != NULL) {
+        hi[next[lo]] = a < b ? b : a;
+    }
+    next[lo]++;
+}
+
+/* The pairs of blocks in triangles, perhaps more than once. */
 static void list_pairs(const sl_patch *patch, const sl_stretch_freedom *freedom, int64_t *next, int32_t *hi)
 {
     for (int32_t t = 0; t < patch->nt; t++) {
         int32_t block[CORNER_UNKNOWNS];
         const int32_t count = blocks_of(patch, freedom, t, block);
+        if (count == 3) { /* blocks are vertices: what lies behind a halfedge with a smaller twin is listed already */
+            for (int32_t k = 0; k < 3; k++) {
+                if (patch->twin[3 * t + k] < 3 * t + k) {
+                    list_pair(block[k], block[k == 2 ? 0 : k + 1], next, hi);
+                }
+            }
+            continue;
+        }
         for (int32_t i = 1; i < count; i++) {
             for (int32_t j = 0; j < i; j++) {
-                const int32_t a = block[i], b = block[j], lo = a < b ? a : b;
-                if (lo < 0 || a == b) {
-                    continue;
-                }
-                if (hi != NULL) {
-                    hi[next[lo]] = a < b ? b : a;
-                }
-                next[lo]++;
+                list_pair(block[i], block[j], next, hi);
             }
         }
     }
@@ -74,13 +83,15 @@ static int64_t sort_unique(int32_t *list, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         const int32_t x = list[i];
         int64_t k = kept;
-        while (k > begin && list[k - 1] > x) {
-            k--;
+        for (; k > begin && list[k - 1] > x; k--) {
+            list[k] = list[k - 1];
         }
-        if (k > begin && list[k - 1] == x) {
+        if (k > begin && list[k - 1] == x) { /* back again */
+            for (; k < kept; k++) {
+                list[k] = list[k + 1];
+            }
             continue;
         }
-        memmove(&list[k + 1], &list[k], (size_t)(kept - k) * sizeof *list);
         list[k] = x;
         kept++;
     }
@@ -148,12 +159,13 @@ static sl_status create_matrix(const block_graph *g, sl_csc **out)
             H->colptr[g->size * i + c + 1] = p;
         }
     }
-    memset(H->val, 0, (size_t)(nnz + 1) * sizeof *H->val);
     return SL_OK;
 }
 
-/* The entries that blocks a and b share, which are the triangle's unknowns from i and from j on. */
-static void place_pair(const block_graph *g, const sl_csc *H, int32_t a, int32_t b, int i, int j, int32_t *place)
+/* The entries that blocks a and b share, which are the triangle's unknowns from i and from j on. size: g->size, known
+ * to the compiler. */
+static inline void place_pair(const block_graph *g, const sl_csc *H, int size, int32_t a, int32_t b, int i, int j,
+                              int32_t *place)
 {
     const int32_t lo = a < b ? a : b, hi = a < b ? b : a;
     int64_t k = g->first[lo];
@@ -161,20 +173,34 @@ static void place_pair(const block_graph *g, const sl_csc *H, int32_t a, int32_t
         k++;
     }
     SL_ASSERT(k < g->end[lo]);
-    const int64_t below = g->size * (k - g->first[lo] + 1);
-    for (int32_t r = 0; r < g->size; r++) {
-        for (int32_t c = 0; c < g->size; c++) { /* a column of a block has the rows of its own from the diagonal on */
+    const int64_t below = size * (k - g->first[lo] + 1);
+    for (int r = 0; r < size; r++) {
+        for (int c = 0; c < size; c++) { /* a column of a block has the rows of its own from the diagonal on */
             const int32_t col = a < b ? r : c, row = a < b ? c : r;
-            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[g->size * lo + col] - col + below + row);
+            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[size * lo + col] - col + below + row);
         }
     }
 }
 
-static void place_own(const block_graph *g, const sl_csc *H, int32_t a, int i, int j, int32_t *place)
+static inline void place_own(const sl_csc *H, int size, int32_t a, int i, int j, int32_t *place)
 {
-    for (int32_t r = 0; r < g->size; r++) {
-        for (int32_t c = 0; c <= r; c++) {
-            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[g->size * a + c] + r - c);
+    for (int r = 0; r < size; r++) {
+        for (int c = 0; c <= r; c++) {
+            place[sl_stretch_entry(i + r, j + c)] = (int32_t)(H->colptr[size * a + c] + r - c);
+        }
+    }
+}
+
+/* The entries of one triangle, whose unknowns make 6 / size blocks. */
+static inline void place_triangle(const block_graph *g, const sl_csc *H, int size, const int32_t *block, int32_t *place)
+{
+    for (int i = 0; i < CORNER_UNKNOWNS / size; i++) {
+        for (int j = 0; j <= i && block[i] >= 0; j++) {
+            if (block[j] == block[i]) {
+                place_own(H, size, block[i], size * i, size * j, place);
+            } else if (block[j] >= 0) {
+                place_pair(g, H, size, block[i], block[j], size * i, size * j, place);
+            }
         }
     }
 }
@@ -185,18 +211,13 @@ static void find_places(const sl_patch *patch, const sl_stretch_freedom *freedom
     const int32_t nowhere = (int32_t)system->H->colptr[system->H->ncols];
     for (int32_t t = 0; t < patch->nt; t++) {
         int32_t *place = &system->place[SL_ELEMENT * (int64_t)t], block[CORNER_UNKNOWNS];
-        const int32_t count = blocks_of(patch, freedom, t, block);
         for (int e = 0; e < SL_ELEMENT && freedom->unknown != NULL; e++) {
             place[e] = nowhere;
         }
-        for (int32_t i = 0; i < count; i++) {
-            for (int32_t j = 0; j <= i && block[i] >= 0; j++) {
-                if (block[j] == block[i]) {
-                    place_own(g, system->H, block[i], g->size * i, g->size * j, place);
-                } else if (block[j] >= 0) {
-                    place_pair(g, system->H, block[i], block[j], g->size * i, g->size * j, place);
-                }
-            }
+        if (blocks_of(patch, freedom, t, block) == 3) {
+            place_triangle(g, system->H, 2, block, place);
+        } else {
+            place_triangle(g, system->H, 1, block, place);
         }
     }
 }
