@@ -1,4 +1,5 @@
 /* A map that is right but for a few triangles, made flip-free by smoothing it around them. */
+#include "param/stretch_internal.h"
 #include "param/stretch_levels_internal.h"
 
 #include "base/memory.h"
@@ -137,19 +138,6 @@ static sl_status part_border(const sl_patch *patch, int32_t nb, const int32_t *b
     return status;
 }
 
-static sl_status list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
-{
-    *border = sl_alloc(2 * (int64_t)patch->nv, sizeof **border);
-    for (int32_t c = 0; c < 3 * patch->nt && *border != NULL; c++) {
-        if (patch->twin[c] < 0) {
-            (*border)[2 * *nb] = patch->tri[c];
-            (*border)[2 * *nb + 1] = patch->tri[sl_corner_next(c)];
-            (*nb)++;
-        }
-    }
-    return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
-}
-
 sl_status sl_stretch_mend(const sl_patch *patch, bool simple, double *uv, bool *mended)
 {
     sl_status status = SL_OK;
@@ -157,7 +145,7 @@ sl_status sl_stretch_mend(const sl_patch *patch, bool simple, double *uv, bool *
     int32_t *list = sl_alloc(patch->nv, sizeof *list), *border = NULL, nb = 0;
     *mended = false;
     SL_TRY(marked == NULL || list == NULL ? SL_OUT_OF_MEMORY : SL_OK);
-    SL_TRY(simple ? list_border(patch, &nb, &border) : SL_OK);
+    SL_TRY(simple ? sl_stretch_list_border(patch, &nb, &border) : SL_OK);
     for (int k = 0; k < ROUNDS && !*mended; k++) {
         bool parted = !simple;
         if (!mend_flips(patch, marked, list, uv)) {
