@@ -2,6 +2,7 @@
 
 #include "atlas/atlas_internal.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,8 +47,9 @@ static sl_status warn_of_bent_facets(sl_atlas *atlas, const sl_atlas_def *def)
         return count > 0 ? SL_OUT_OF_MEMORY : SL_OK;
     }
     snprintf(w->text, sizeof w->text,
-             "%d facets stand alone and are stretched above the bound %.4g, most of all facet %d (chart %d, L2 %.4g)",
-             count, bound, seg->face[seg->chart[worst].first], worst, seg->chart[worst].flat.distortion.l2);
+             "%d facet%s that stand%s alone: stretched above the bound %.4g, most of all facet %d (chart %d, L2 %.4g)",
+             count, sl_plural(count), count == 1 ? "s" : "", bound, seg->face[seg->chart[worst].first], worst,
+             seg->chart[worst].flat.distortion.l2);
     return SL_OK;
 }
 
@@ -70,9 +72,9 @@ static sl_status warn_of_symmetry(sl_atlas *atlas, const sl_atlas_def *def)
         }
         snprintf(
             w->text, sizeof w->text,
-            "copies across %d axes are approximate: a near symmetry, with corners up to %.3g of the diagonal off (%g "
+            "copies across %d ax%s are approximate: a near symmetry, with corners up to %.3g of the diagonal off (%g "
             "allowed)",
-            info->near_axes, info->deviation, sl_symmetry_default().near);
+            info->near_axes, info->near_axes == 1 ? "is" : "es", info->deviation, sl_symmetry_default().near);
     }
     if (info->planes > 0) {
         sl_warning *w = push_warning(atlas, -1);
@@ -80,17 +82,18 @@ static sl_status warn_of_symmetry(sl_atlas *atlas, const sl_atlas_def *def)
             return SL_OUT_OF_MEMORY;
         }
         snprintf(w->text, sizeof w->text,
-                 "%d components are cut at the plane of a near symmetry (mean misfit %.3g of the diagonal); their "
-                 "facets do not correspond, so nothing is shared there",
-                 info->planes, info->misfit);
+                 "%d component%s cut at the plane of a near symmetry (mean misfit %.3g of the diagonal); the facets "
+                 "beside it do not correspond, so nothing is shared there",
+                 info->planes, info->planes == 1 ? " is" : "s are", info->misfit);
     }
     if (info->refused > 0) {
         sl_warning *w = push_warning(atlas, -1);
         if (w == NULL) {
             return SL_OUT_OF_MEMORY;
         }
-        snprintf(w->text, sizeof w->text, "%d charts could not copy their mirror image and are laid flat themselves",
-                 info->refused);
+        snprintf(w->text, sizeof w->text,
+                 "%d chart%s could not be copied from the mirror image and had to be laid flat", info->refused,
+                 sl_plural(info->refused));
     }
     return SL_OK;
 }
@@ -105,8 +108,8 @@ static sl_status warn_of_search(sl_atlas *atlas, const sl_atlas_def *def)
             return SL_OUT_OF_MEMORY;
         }
         snprintf(w->text, sizeof w->text,
-                 "the search found no valid charts for %d of %d pieces: they are cut by recursion", info.failed,
-                 info.pieces);
+                 "the search found no valid charts for %d of %d piece%s, cut by recursion instead", info.failed,
+                 info.pieces, sl_plural(info.pieces));
     }
     if (info.direct > 0) {
         sl_warning *w = push_warning(atlas, -1);
@@ -114,16 +117,17 @@ static sl_status warn_of_search(sl_atlas *atlas, const sl_atlas_def *def)
             return SL_OUT_OF_MEMORY;
         }
         snprintf(w->text, sizeof w->text,
-                 "the seams of no coarse mesh could be carried over to %d of %d pieces: searched as they are",
-                 info.direct, info.pieces);
+                 "the seams of no coarse mesh could be carried over to %d of %d piece%s, searched without one",
+                 info.direct, info.pieces, sl_plural(info.pieces));
     }
     if (info.missed > 0) {
         sl_warning *w = push_warning(atlas, -1);
         if (w == NULL) {
             return SL_OUT_OF_MEMORY;
         }
-        snprintf(w->text, sizeof w->text, "%d of %d pieces are not within the targets (L2 %.4g, mean s1/s2 %.4g)",
-                 info.missed, info.pieces, def->optimize.target_stretch, def->optimize.target_angle);
+        snprintf(w->text, sizeof w->text, "%d of %d piece%s not within the targets (L2 %.4g, mean s1/s2 %.4g)",
+                 info.missed, info.pieces, sl_plural(info.pieces), def->optimize.target_stretch,
+                 def->optimize.target_angle);
     }
     return SL_OK;
 }
@@ -142,16 +146,18 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
             return SL_OUT_OF_MEMORY;
         }
         if (chart->flat.verdict == SL_CHART_STRETCHED) {
-            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): stretch L2 %.4g is above the bound %.4g",
-                     c, chart->count, seg->face[chart->first], chart->flat.distortion.l2,
+            snprintf(w->text, sizeof w->text,
+                     "chart %d (%d facet%s, first %d): stretch L2 %.4g is above the bound %.4g", c, chart->count,
+                     sl_plural(chart->count), seg->face[chart->first], chart->flat.distortion.l2,
                      def->segment.flatten.max_stretch);
         } else if (chart->flat.verdict == SL_CHART_SHEARED) {
-            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): mean s1/s2 %.4g is above the bound %.4g",
-                     c, chart->count, seg->face[chart->first], chart->flat.distortion.angle_mean,
+            snprintf(w->text, sizeof w->text,
+                     "chart %d (%d facet%s, first %d): mean s1/s2 %.4g is above the bound %.4g", c, chart->count,
+                     sl_plural(chart->count), seg->face[chart->first], chart->flat.distortion.angle_mean,
                      def->segment.flatten.max_angle);
         } else {
-            snprintf(w->text, sizeof w->text, "chart %d (%d facets, first %d): %s", c, chart->count,
-                     seg->face[chart->first], sl_flatten_verdict_name(chart->flat.verdict));
+            snprintf(w->text, sizeof w->text, "chart %d (%d facet%s, first %d): %s", c, chart->count,
+                     sl_plural(chart->count), seg->face[chart->first], sl_flatten_verdict_name(chart->flat.verdict));
         }
     }
     if (atlas->repair.degenerate_faces > 0) {
@@ -159,7 +165,8 @@ static sl_status warn_of_charts(sl_atlas *atlas, const sl_atlas_def *def)
         if (w == NULL) {
             return SL_OUT_OF_MEMORY;
         }
-        snprintf(w->text, sizeof w->text, "%d facets without area get one texel each", atlas->repair.degenerate_faces);
+        snprintf(w->text, sizeof w->text, "%d facet%s without area: one texel each", atlas->repair.degenerate_faces,
+                 sl_plural(atlas->repair.degenerate_faces));
     }
     sl_status status = warn_of_symmetry(atlas, def);
     status = status == SL_OK ? warn_of_search(atlas, def) : status;

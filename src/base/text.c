@@ -429,3 +429,8 @@ int32_t sl_format_double(double value, char text[SL_DOUBLE_TEXT])
     }
     return length;
 }
+
+const char *sl_plural(int64_t count)
+{
+    return count == 1 ? "" : "s";
+}

@@ -17,6 +17,9 @@ int32_t sl_format_double(double value, char text[SL_DOUBLE_TEXT]);
  * Locale-free. */
 const char *sl_parse_double(const char *begin, const char *end, double *value);
 
+/* What makes a word of a message plural: "s", or "" for one: "%d chart%s". */
+const char *sl_plural(int64_t count);
+
 /* Parses an optional sign and digits. Returns begin when there is no number or it does not fit. */
 const char *sl_parse_int(const char *begin, const char *end, int64_t *value);
 

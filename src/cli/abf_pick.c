@@ -1,6 +1,7 @@
 #include "cli/abf_pick.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <stdio.h>
 
@@ -92,9 +93,10 @@ static sl_status cut_and_take(cli_run *run, const abf_source *source, const sl_p
     pick->chart = source->chart >= 0 ? source->chart : largest_chart(seg);
     const sl_chart *chart = &seg->chart[pick->chart];
     SL_TRY(extract(pick, pick->atlas->mesh, pick->atlas->triangulation, &seg->face[chart->first], chart->count));
-    cli_note(run, "%s into %d charts; this is number %d with %d of %d facets%s",
+    cli_note(run, "%s into %d chart%s; this is number %d with %d of %d facets%s",
              source->seams != NULL ? "your seams cut the mesh" : "the mesh is no disk: `unwrap` cuts it", pick->charts,
-             pick->chart, chart->count, pick->facets, source->chart < 0 ? "; choose another one by --chart N" : "");
+             sl_plural(pick->charts), pick->chart, chart->count, pick->facets,
+             source->chart < 0 ? "; choose another one by --chart N" : "");
     if (!sl_patch_is_disk(pick->patch)) {
         sl_diag_reason(diag, "chart %d is no disk: it has %d border loops and Euler characteristic %d", pick->chart,
                        pick->patch->loops, pick->patch->euler);

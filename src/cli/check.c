@@ -3,6 +3,7 @@
 
 #include "atlas/sidecar.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "mesh/build.h"
 
 #include <jansson.h>
@@ -136,7 +137,8 @@ int cli_check(int argc, char **argv)
             print_report(&report);
         }
         if (!run.json && count_copies(files[0], polygons.nf, &charts, &copies)) {
-            printf("%-28s %d charts, %d of them copies that share their texture\n", "by its sidecar", charts, copies);
+            printf("%-28s %d chart%s, %d of them %s\n", "by its sidecar", charts, sl_plural(charts), copies,
+                   copies == 1 ? "a copy that shares its texture" : "copies that share their texture");
         }
         code = run.strict && needs_repair(&report) ? CLI_INFEASIBLE : CLI_DONE;
     }

@@ -1,6 +1,7 @@
 /* seamlab compare: the pictures. */
 #include "cli/compare.h"
 
+#include "base/text.h"
 #include "cli/render_scene.h"
 #include "image/png.h"
 #include "render/render.h"
@@ -41,8 +42,8 @@ static sl_status draw_one(cli_run *run, cli_scene *scene, const cli_contender *c
     sl_picture picture = sl_picture_default();
     char numbers[160];
     const sl_atlas_measure *m = &c->measure;
-    snprintf(numbers, sizeof numbers, "%d chart%s  seams %.2f  L2 %.3f  angle %.3f", m->charts,
-             m->charts == 1 ? "" : "s", m->seam_length, m->global.l2, m->global.angle_mean);
+    snprintf(numbers, sizeof numbers, "%d chart%s  seams %.2f  L2 %.3f  angle %.3f", m->charts, sl_plural(m->charts),
+             m->seam_length, m->global.l2, m->global.angle_mean);
     normalise(scene, m);
     picture.width = how->side;
     picture.height = how->side * 3 / 4;

@@ -1,5 +1,6 @@
 /* seamlab demo: the whole way without any mesh at hand. */
 #include "atlas/sidecar.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/preview.h"
 #include "generators.h"
@@ -71,9 +72,10 @@ static int run_demo(cli_run *run, const sl_generator *generator, const char *fol
         code = cli_pictures_write(run, folder, &pictures);
     }
     if (code == CLI_DONE) {
-        cli_note(run, "%d charts, seams %.2f diagonals, fill %.2f\n%s/%s.obj, %s/%s.atlas.json, pictures beside them",
-                 atlas->segmentation->nchart, sl_atlas_seam_diagonals(atlas->mesh), atlas->pack.fill, folder,
-                 generator->name, folder, generator->name);
+        cli_note(run, "%d chart%s, seams %.2f diagonals, fill %.2f\n%s/%s.obj, %s/%s.atlas.json, pictures beside them",
+                 atlas->segmentation->nchart, sl_plural(atlas->segmentation->nchart),
+                 sl_atlas_seam_diagonals(atlas->mesh), atlas->pack.fill, folder, generator->name, folder,
+                 generator->name);
     }
 cleanup:
     cli_pictures_clear(&pictures);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "edit/picture.h"
 #include "image/png.h"
 
@@ -128,7 +129,7 @@ static void print_saved(cli_run *run, const sl_session *session, const sl_atlas_
 {
     const outline o = outline_of(session);
     if (o.outside > 0) {
-        cli_note(run, "warning: %d charts reach beyond the page [0, 1]", o.outside);
+        cli_note(run, "warning: %d chart%s beyond the page [0, 1]", o.outside, o.outside == 1 ? " reaches" : "s reach");
     }
     if (run->json) {
         char hash[20];
@@ -143,7 +144,8 @@ static void print_saved(cli_run *run, const sl_session *session, const sl_atlas_
         json_decref(j);
         return;
     }
-    cli_note(run, "%d charts, %d constraints, worst stretch L2 %.3f, %s", o.charts, o.constraints, o.stretch,
+    cli_note(run, "%d chart%s, %d constraint%s, worst stretch L2 %.3f, %s", o.charts, sl_plural(o.charts),
+             o.constraints, sl_plural(o.constraints), o.stretch,
              check->passed ? "no flip, no overlap: proven" : "uncertified: charts overlap");
 }
 

@@ -177,7 +177,7 @@ static sl_status write_plot(const char *path, const front_row *row, int32_t coun
                          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4.5\" fill=\"%s\"/><text x=\"%.1f\" y=\"%.1f\" "
                          "text-anchor=\"middle\" fill=\"#1c1e21\">%d chart%s</text>\n",
                          x, y, row[k].missed > 0 || !row[k].passed ? "#b3261e" : "#1a7f4b", x, y - 10.0,
-                         (int)row[k].charts, row[k].charts == 1 ? "" : "s");
+                         (int)row[k].charts, sl_plural((int)row[k].charts));
     }
     sl_writer_text(w, "</svg>\n");
     return sl_writer_commit(w, diag);
@@ -196,7 +196,7 @@ static int walk_front(cli_run *run, const char *path, sl_atlas_def *def, const d
         for (int32_t k = 0; k < count && code == CLI_DONE; k++) {
             code = cli_fail(run, reach(run, &polygons, def, target[k], &row[k], &diag), &diag);
             if (code == CLI_DONE) {
-                cli_note(run, "L2 %.4g: %d charts", target[k], (int)row[k].charts);
+                cli_note(run, "L2 %.4g: %d chart%s", target[k], (int)row[k].charts, sl_plural((int)row[k].charts));
             }
         }
     }

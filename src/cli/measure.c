@@ -30,8 +30,8 @@ static void print_row(const char *name, const sl_atlas_measure *m)
     printf("  flipped %d   degenerate %d   overlap inside %.5f, across %.5f\n", d->flipped, d->degenerate,
            m->overlap_inside, m->overlap_across);
     if (m->copies > 0) {
-        printf("  shared     %d charts are copies; they lie on %.5f of the texels covered, by intent\n", m->copies,
-               m->shared);
+        printf("  shared     %d chart%s on %.5f of the texels covered, by intent\n", m->copies,
+               m->copies == 1 ? " is a copy and lies" : "s are copies and lie", m->shared);
     }
     printf("  fill       %.4f of the bounding square at %d^2\n", m->fill, m->resolution);
 }

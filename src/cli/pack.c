@@ -2,6 +2,7 @@
 #include "atlas/repack.h"
 #include "atlas/sidecar.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/pack_options.h"
 
@@ -139,9 +140,9 @@ static void print_summary(pack_options *o, const sl_repacked *r)
         json_decref(j);
         return;
     }
-    cli_note(&o->run, "%d charts, %d of them copies, on %d page%s: fill %.3f, %.4g texels a unit; proven %g apart",
-             r->charts, r->copies, r->pack.pages, r->pack.pages == 1 ? "" : "s", r->pack.fill, r->texels_a_unit,
-             o->def.pack.margin);
+    cli_note(&o->run, "%d chart%s, %d of them %s, on %d page%s: fill %.3f, %.4g texels a unit; proven %g apart",
+             r->charts, sl_plural(r->charts), r->copies, r->copies == 1 ? "a copy" : "copies", r->pack.pages,
+             sl_plural(r->pack.pages), r->pack.fill, r->texels_a_unit, o->def.pack.margin);
 }
 
 static int deliver(pack_options *o, const sl_meshfile *file, const sl_repacked *r)

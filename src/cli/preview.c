@@ -30,8 +30,8 @@ static sl_status draw(const sl_atlas *atlas, const sl_context *context, cli_pict
     const sl_sharing_info *sharing = &atlas->segmentation->sharing;
     char title[128];
     int32_t *shown = shown_charts(atlas);
-    snprintf(title, sizeof title, "%d charts are copies: %.0f %% saved", sharing->copies,
-             100.0 * sharing->area);
+    snprintf(title, sizeof title, "%d chart%s: %.0f %% saved", sharing->copies,
+             sharing->copies == 1 ? " is a copy" : "s are copies", 100.0 * sharing->area);
     SL_TRY(shown != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     scene.mesh = atlas->mesh;
     scene.triangulation = atlas->triangulation;

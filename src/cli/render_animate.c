@@ -1,6 +1,7 @@
 #include "cli/render_animate.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "mesh/topology.h"
 #include "render/render.h"
 
@@ -276,15 +277,17 @@ static sl_status draw_states(animation *a)
         }
         SL_TRY(sl_report_progress(a->context, "animate", (double)state / states));
         SL_TRY(label(a, a->work));
-        snprintf(title, sizeof title, "%d split%s: %d piece%s", state, state == 1 ? "" : "s", a->charts,
-                 a->charts == 1 ? "" : "s");
+        snprintf(title, sizeof title, "%d split%s: %d piece%s", state, sl_plural(state), a->charts,
+                 sl_plural(a->charts));
         SL_TRY(draw_state(a, a->work, title, frames, &azimuth, step));
     }
     SL_TRY(label(a, a->atlas->mesh));
     if (s->merges > 0) {
-        snprintf(title, sizeof title, "%d splits, %d sewn: %d charts", s->nsplit, s->merges, a->charts);
+        snprintf(title, sizeof title, "%d split%s, %d sewn: %d chart%s", s->nsplit, sl_plural(s->nsplit), s->merges,
+                 a->charts, sl_plural(a->charts));
     } else {
-        snprintf(title, sizeof title, "%d splits: %d charts", s->nsplit, a->charts);
+        snprintf(title, sizeof title, "%d split%s: %d chart%s", s->nsplit, sl_plural(s->nsplit), a->charts,
+                 sl_plural(a->charts));
     }
     SL_TRY(draw_state(a, a->atlas->mesh, title, END_FRAMES, &azimuth, step));
     SL_TRY(sl_apng_add(a->apng, a->canvas, END_MS));

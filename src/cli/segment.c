@@ -2,6 +2,7 @@
 #include "atlas/atlas.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/render_animate.h"
 #include "cli/segment_options.h"
@@ -106,8 +107,8 @@ static void print_summary(cli_run *run, const sl_mesh *mesh, const sl_segmentati
         putchar('\n');
         json_decref(j);
     } else {
-        cli_note(run, "%d charts, %d splits, %d merges, seams %.2f diagonals", seg->nchart, seg->nsplit, seg->merges,
-                 seam);
+        cli_note(run, "%d chart%s, %d split%s, %d merge%s, seams %.2f diagonals", seg->nchart, sl_plural(seg->nchart),
+                 seg->nsplit, sl_plural(seg->nsplit), seg->merges, sl_plural(seg->merges), seam);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "atlas/sidecar.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/pack_options.h"
 #include "cli/preview.h"
@@ -157,16 +158,18 @@ static void print_summary(unwrap_options *o, const sl_atlas *atlas)
         json_decref(j);
         return;
     }
-    cli_note(&o->run, "%d charts, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, %s", seg->nchart, seam,
-             worst_stretch(seg), atlas->pack.fill,
+    cli_note(&o->run, "%d chart%s, seams %.2f diagonals, worst stretch L2 %.3f, fill %.2f, %s", seg->nchart,
+             sl_plural(seg->nchart), seam, worst_stretch(seg), atlas->pack.fill,
              atlas->check.passed ? "no flip, no overlap: proven" : "uncertified: charts overlap");
     if (atlas->pack.pages > 1 || o->def.pack.density > 0.0) {
-        cli_note(&o->run, "on %d page%s, %.4g texels a unit", atlas->pack.pages, atlas->pack.pages == 1 ? "" : "s",
+        cli_note(&o->run, "on %d page%s, %.4g texels a unit", atlas->pack.pages, sl_plural(atlas->pack.pages),
                  atlas->texels_a_unit);
     }
     if (seg->sharing.copies > 0) {
-        cli_note(&o->run, "%d of them are mirror images or copies that share their texture: %.0f %% of it is saved",
-                 seg->sharing.copies, 100.0 * seg->sharing.area);
+        cli_note(&o->run, "%d of them %s: %.0f %% of it is saved", seg->sharing.copies,
+                 seg->sharing.copies == 1 ? "is a mirror image or copy that shares its texture"
+                                          : "are mirror images or copies that share their texture",
+                 100.0 * seg->sharing.area);
     }
 }
 
@@ -181,9 +184,9 @@ static int deliver(unwrap_options *o, const sl_meshfile *file, const sl_atlas *a
         const bool written = o->allow_overlap && check->unlike == 0;
         fprintf(stderr,
                 "seamlab unwrap: the atlas failed its own check and is %s: %d flipped, %d degenerate "
-                "triangles, %d charts that may overlap themselves, %lld texels hit twice\n",
+                "triangles, %d chart%s not proven free of overlap, %lld texels hit twice\n",
                 written ? "written all the same, uncertified" : "not written", check->flipped, check->degenerate,
-                check->uncertified_charts, (long long)check->overlapping_texels);
+                check->uncertified_charts, sl_plural(check->uncertified_charts), (long long)check->overlapping_texels);
         if (!written) {
             return CLI_CHECK_FAILED;
         }

@@ -314,6 +314,19 @@ static void integers_are_parsed_when_they_fit(void **state)
     }
 }
 
+static void one_is_singular_and_all_else_plural(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x91a1);
+    assert_string_equal(sl_plural(1), "");
+    assert_string_equal(sl_plural(0), "s");
+    assert_string_equal(sl_plural(-1), "s");
+    assert_string_equal(sl_plural(INT64_C(0x100000001)), "s"); /* one in its lower half */
+    for (int k = 0; k < 100; k++) {
+        assert_string_equal(sl_plural(2 + test_index(&rng, 1 << 30)), "s");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -327,6 +340,7 @@ int main(void)
         cmocka_unit_test(formatting_writes_what_a_person_would),
         cmocka_unit_test(a_locale_with_a_decimal_comma_changes_nothing),
         cmocka_unit_test(integers_are_parsed_when_they_fit),
+        cmocka_unit_test(one_is_singular_and_all_else_plural),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -270,7 +270,7 @@ no_file never.obj never.atlas.json
 expect 0 "$seamlab" demo --model body -o body --quiet
 for n in 1 2; do
     expect 0 "$seamlab" unwrap body/body.obj -o shared$n.obj --threads $n
-    contains err.txt 'share their texture: 50 %'
+    contains err.txt 'shares\? \(its\|their\) texture: 50 %'
 done
 cmp -s shared1.obj shared2.obj && cmp -s shared1.atlas.json shared2.atlas.json || complain "sharing: other bytes with 2 threads"
 contains shared1.atlas.json '"schema": 2'
@@ -279,9 +279,9 @@ contains shared1.atlas.json '"texture_memory_saved":0.5'
 json shared1.atlas.json
 expect 0 "$seamlab" measure shared1.obj
 contains out.txt 'flipped 0 .*overlap inside 0.00000, across 0.00000'
-contains out.txt 'charts are copies'
+contains out.txt '[1-9][0-9]* chart\( is a copy\|s are copies\)'
 expect 0 "$seamlab" check shared1.obj
-contains out.txt 'by its sidecar .* [0-9]* of them copies'
+contains out.txt 'by its sidecar .* [1-9][0-9]* of them \(a copy\|copies\)'
 cp shared1.obj orphan.obj
 expect 0 "$seamlab" measure orphan.obj --json
 contains out.txt '"copies":0'
