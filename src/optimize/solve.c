@@ -16,6 +16,7 @@ static const double W_HIGH = 1.0;
 static const double W_LOW = -5.0; /* at coarse targets lower ones hardly gain angle, and what cuts promise is noise */
 static const double FINE_ANGLE = 1.1, MOST_LOWER = 40.0; /* below that target they do gain: so many times W_LOW */
 static const int BALANCE_ROUNDS = 6;
+static const int32_t MOST_KEPT = 50000;  /* triangles of a chart whose factor is kept between rounds: 60 MB */
 static const double BALANCED = 0.02;     /* the two shares of the budgets agree within this ratio */
 static const double BALANCED_FAR = 0.15; /* ... while their mean is above FAR_SHARE */
 static const double FAR_SHARE = 1.3;
@@ -158,11 +159,14 @@ sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate
     return status;
 }
 
-sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
-                       bool *embedded)
+/* The same patch may be solved up to four times, and again by the next call that names the workspace: what its matrix
+ * looks like is found once. */
+static sl_status solve_with(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort,
+                            sl_stretch_workspace *workspace, double *uv, bool *embedded)
 {
     sl_status status = SL_OK;
     attempt a = {.patch = patch, .context = &state->quiet, .def = stretch_def(state)};
+    a.def.workspace = workspace;
     *embedded = false;
     if (!sl_patch_is_disk(patch)) {
         return SL_OK;
@@ -200,6 +204,18 @@ cleanup:
     sl_free(a.start);
     sl_free(a.work);
     sl_free(a.border);
+    return status;
+}
+
+sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,
+                       bool *embedded)
+{
+    sl_stretch_workspace *workspace = NULL;
+    sl_status status = SL_OK;
+    SL_TRY(sl_stretch_workspace_create(&workspace));
+    SL_TRY(solve_with(state, patch, effort, workspace, uv, embedded));
+cleanup:
+    sl_stretch_workspace_free(workspace);
     return status;
 }
 
@@ -253,7 +269,21 @@ typedef struct resolution {
     sl_status *status;
     bool *embedded;
     sl_opt_effort effort;
+    sl_stretch_workspace **workspace; /* by chart; NULL = each has its own for a while */
 } resolution;
+
+static sl_status resolve_chart(const resolution *r, int64_t c)
+{
+    const sl_patch *patch = r->state->chart[c].patch;
+    if (r->workspace == NULL || patch->nt > MOST_KEPT) {
+        return sl_opt_solve(r->state, patch, r->effort, r->uv[c], &r->embedded[c]);
+    }
+    sl_status status = r->workspace[c] == NULL ? sl_stretch_workspace_create(&r->workspace[c]) : SL_OK;
+    if (status == SL_OK) {
+        status = solve_with(r->state, patch, r->effort, r->workspace[c], r->uv[c], &r->embedded[c]);
+    }
+    return status;
+}
 
 static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
 {
@@ -262,8 +292,7 @@ static void resolve_range(void *user, int64_t begin, int64_t end, int32_t chunk)
     for (int64_t c = begin; c < end; c++) {
         const sl_opt_chart *chart = &r->state->chart[c];
         r->uv[c] = sl_copy(chart->uv, 2 * (int64_t)chart->patch->nv, sizeof **r->uv);
-        r->status[c] = r->uv[c] == NULL ? SL_OUT_OF_MEMORY
-                                        : sl_opt_solve(r->state, chart->patch, r->effort, r->uv[c], &r->embedded[c]);
+        r->status[c] = r->uv[c] == NULL ? SL_OUT_OF_MEMORY : resolve_chart(r, c);
         if (r->status[c] == SL_OK && r->embedded[c]) {
             sl_opt_measure(r->state->surface, chart->patch, r->uv[c], &r->sums[c], NULL);
         }
@@ -284,14 +313,16 @@ static void take(sl_opt_state *state, int64_t c, double *uv, const sl_opt_sums *
 }
 
 /* Every chart once more, side by side; *all = every one has an embedding. Charts without keep the map they have; or
- * all do where one has none, if `together`. */
-static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool together, bool *all)
+ * all do where one has none, if `together`. workspace: by chart, nullable. */
+static sl_status resolve(sl_opt_state *state, sl_opt_effort effort, bool together, sl_stretch_workspace **workspace,
+                         bool *all)
 {
     sl_status status = SL_OK;
     const int64_t n = state->nchart;
     *all = true;
     resolution r = {.state = state,
                     .effort = effort,
+                    .workspace = workspace,
                     .uv = sl_calloc(n, sizeof *r.uv),
                     .sums = sl_calloc(n, sizeof *r.sums),
                     .status = sl_calloc(n, sizeof *r.status),
@@ -326,12 +357,12 @@ cleanup:
 sl_status sl_opt_resolve(sl_opt_state *state)
 {
     bool all;
-    return resolve(state, SL_OPT_HELD, false, &all);
+    return resolve(state, SL_OPT_HELD, false, NULL, &all);
 }
 
 sl_status sl_opt_unfold(sl_opt_state *state, bool guessed, bool *all)
 {
-    return resolve(state, guessed ? SL_OPT_GUESSED : SL_OPT_COLD, false, all);
+    return resolve(state, guessed ? SL_OPT_GUESSED : SL_OPT_COLD, false, NULL, all);
 }
 
 /* ln of the share of the stretch budget used over that of the angle budget: falls as w rises. */
@@ -384,6 +415,8 @@ sl_status sl_opt_balance(sl_opt_state *state)
     const double since = sl_opt_clock();
     const double lowest = lowest_weight(state->def);
     double low = lowest, high = W_HIGH, w0 = NAN, f0 = NAN;
+    sl_stretch_workspace **workspace = sl_calloc(state->nchart, sizeof *workspace); /* charts stay as they are here */
+    SL_TRY(workspace != NULL ? SL_OK : SL_OUT_OF_MEMORY);
     for (int k = 0; k < BALANCE_ROUNDS; k++) {
         const double f = imbalance(state), w = state->w;
         bool all;
@@ -398,7 +431,7 @@ sl_status sl_opt_balance(sl_opt_state *state)
         } else {
             state->w = next_weight(w, f, w0, f0, low, high);
         }
-        SL_TRY(resolve(state, SL_OPT_HELD, true, &all));
+        SL_TRY(resolve(state, SL_OPT_HELD, true, workspace, &all));
         if (all) {
             w0 = w;
             f0 = f;
@@ -411,6 +444,10 @@ sl_status sl_opt_balance(sl_opt_state *state)
         }
     }
 cleanup:
+    for (int64_t c = 0; c < state->nchart && workspace != NULL; c++) {
+        sl_stretch_workspace_free(workspace[c]);
+    }
+    sl_free(workspace);
     (void)sl_opt_book(state, SL_OPTIMIZE_BALANCE, since);
     return status;
 }

@@ -229,6 +229,7 @@ static sl_status solve_level(descent *d, int32_t l)
     def.relative_decrease = COARSE_DECREASE;
     def.target_l2 = 0.0;
     def.pin_count = 0;
+    def.workspace = NULL; /* that is for the whole patch, which comes last and perhaps again */
     SL_TRY(sl_level_patch(d->patch, &d->levels.level[l], &patch, &vertex));
     uv = sl_alloc(patch->nv, 2 * sizeof *uv);
     if (uv == NULL) {

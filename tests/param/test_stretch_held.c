@@ -488,6 +488,11 @@ static void results_do_not_depend_on_the_workspace(void **state)
         memcpy(uv, start, size);
         assert_int_equal(sl_stretch_minimise(patch, &def, NULL, uv, NULL), SL_OK);
         assert_memory_equal(uv, alone, size);
+        def.fixed = NULL; /* through coarse meshes, after and before the whole */
+        assert_int_equal(sl_stretch_unfold(patch, &def, NULL, uv, NULL), SL_OK);
+        def.workspace = NULL;
+        assert_int_equal(sl_stretch_unfold(patch, &def, NULL, alone, NULL), SL_OK);
+        assert_memory_equal(uv, alone, size);
         free(uv);
         free(alone);
         free(start);
