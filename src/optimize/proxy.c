@@ -14,6 +14,7 @@ static const int32_t SEARCH_FROM = 10000, /* and the first: at coarse targets, *
 static const int CARRIES = 3;             /* of the searched mesh's seams */
 static const int FINISHES = 2;            /* of the tried mesh's */
 static const double ENOUGH = 0.9;         /* share of the budget that is well spent */
+static const double NEAR_MISS = 1.5;      /* share of a budget that a few cuts on the finer mesh still mend */
 static const double SAME = 0.005;         /* no more comes of searching on */
 static const double MOST_RATIO = 2.0; /* between the losses of one mesh and the next finer, as far as it is believed */
 
@@ -161,8 +162,14 @@ cleanup:
     return status;
 }
 
+static bool is_enough(double share, double last)
+{
+    return share <= 1.0 && (share >= ENOUGH || fabs(share - last) < SAME);
+}
+
 /* Searches the coarse mesh, carries the seams over, and corrects its targets until the finer one's are met and not
- * much is left of them. *done = false: the seams could not be carried over. */
+ * much is left of them. Where only little is missed, that is cut on the finer one at once. *done = false: the seams
+ * could not be carried over. */
 static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
 {
     sl_status status = SL_OK;
@@ -172,8 +179,7 @@ static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
         const double last = share;
         SL_TRY(search_again(l));
         SL_TRY(try_charts(l, finer, &share, done));
-        if (!*done || (share <= 1.0 && (share >= ENOUGH || fabs(share - last) < SAME)) ||
-            (share > 1.0 && best.share <= 1.0)) {
+        if (!*done || is_enough(share, last) || (share > 1.0 && (best.share <= 1.0 || share < NEAR_MISS))) {
             break;
         }
         SL_TRY(remember(l, share, &best));
