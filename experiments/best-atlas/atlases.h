@@ -26,10 +26,13 @@ typedef struct atlas_row {
 /* The settings of a run; same: the row whose L2 SAME_L2 takes for its target. */
 sl_atlas_def variant_def(int variant, const atlas_row *same);
 
-/* Unwraps and measures; *atlas is owned by the caller, NULL where none was made (row->made false, which is no error).
- * generated is nullable. SL_OUT_OF_MEMORY. */
-SL_NODISCARD sl_status make_atlas(exp_run *run, const exp_mesh *mesh, const sl_atlas_def *def, sl_atlas **atlas,
-                                  atlas_row *row);
+/* Unwraps and measures; *atlas is owned by the caller, NULL where none was made: row->made = false and a
+ * failure of that name, which is no error. SL_CANCELLED. */
+SL_NODISCARD sl_status make_atlas(exp_run *run, const char *name, const exp_mesh *mesh, const sl_atlas_def *def,
+                                  sl_atlas **atlas, atlas_row *row);
+
+/* Cells of a table's row. */
+void number_cells(exp_page *page, double seam, double l2, double angle, double fill);
 
 /* The small meshes that tables of other tools are about; others of a corpus take too long for a page. */
 bool is_small_mesh(const char *name);

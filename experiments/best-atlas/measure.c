@@ -1,6 +1,7 @@
 #include "atlases.h"
 
 #include "atlas/measure.h"
+#include "support/failures.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,6 +13,14 @@ const char *const variant_name[RUNS] = {"paper", "best, nothing protected", "bes
                                         "best, axis and first cut protected", "best, at the paper's L2"};
 const char *const stage_name[STAGES] = {"coarsen",    "start", "guesses", "cuts",  "balance", "sewing",
                                         "straighten", "carry", "packing", "check", "rest"};
+
+void number_cells(exp_page *page, double seam, double l2, double angle, double fill)
+{
+    exp_page_cell(page, "%.3f", seam);
+    exp_page_cell(page, "%.4f", l2);
+    exp_page_cell(page, "%.3f", angle);
+    exp_page_cell(page, "%.3f", fill);
+}
 
 /* When the packing began. */
 typedef struct stopwatch {
@@ -106,8 +115,7 @@ cleanup:
 }
 
 /* The search tells its own stages; the rest is building the mesh, symmetry, and the paper's cuts where there is no
- * search.
- */
+ * search. */
 static void take_stages(const sl_optimize_info *info, atlas_row *row)
 {
     row->stage[REST] = row->seconds - row->stage[PACK] - row->stage[CHECK];
@@ -118,7 +126,8 @@ static void take_stages(const sl_optimize_info *info, atlas_row *row)
     row->stage[REST] = fmax(row->stage[REST], 0.0);
 }
 
-sl_status make_atlas(exp_run *run, const exp_mesh *mesh, const sl_atlas_def *def, sl_atlas **atlas, atlas_row *row)
+sl_status make_atlas(exp_run *run, const char *name, const exp_mesh *mesh, const sl_atlas_def *def, sl_atlas **atlas,
+                     atlas_row *row)
 {
     stopwatch watch = {0};
     const double start = exp_cpu_seconds();
@@ -127,10 +136,10 @@ sl_status make_atlas(exp_run *run, const exp_mesh *mesh, const sl_atlas_def *def
     context.progress_user = &watch;
     *row = (atlas_row){.facets = mesh->polygons.nf, .axis = NAN};
     *atlas = NULL;
-    sl_status status = sl_unwrap(&mesh->polygons, def, &context, atlas, NULL);
+    sl_status status = sl_unwrap(&mesh->polygons, def, &context, atlas, &run->diag);
     const double end = exp_cpu_seconds();
-    if (status != SL_OK) {
-        return status == SL_OUT_OF_MEMORY ? status : SL_OK;
+    if (exp_failed(run, name, &status) || status != SL_OK) {
+        return status;
     }
     SL_TRY(sl_atlas_settle(*atlas, def, &run->context)); /* once more, to see what of the packing's time it takes */
     row->seconds = end - start;

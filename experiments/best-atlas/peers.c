@@ -85,15 +85,12 @@ static void show_row(exp_page *page, const peer *p)
     exp_page_cell(page, "%s", p->mesh);
     exp_page_cell(page, "%s", p->tool);
     exp_page_cell(page, "%.0f", p->charts);
-    exp_page_cell(page, "%.3f", p->seam);
-    exp_page_cell(page, "%.4f", p->l2);
-    exp_page_cell(page, "%.3f", p->angle);
-    exp_page_cell(page, "%.3f", p->fill);
+    number_cells(page, p->seam, p->l2, p->angle, p->fill);
     exp_page_time(page, "%.2f", p->seconds);
     exp_page_row_end(page);
 }
 
-/* Ours at that tool's L2; NULL rows where the mesh is not at hand. */
+/* Ours at that tool's L2. */
 static sl_status reach(exp_run *run, const exp_source *source, const peer *theirs, exp_claims *claims, peer *ours)
 {
     sl_status status = SL_OK;
@@ -104,7 +101,7 @@ static sl_status reach(exp_run *run, const exp_source *source, const peer *their
     def.optimize.target_stretch = theirs->l2;
     def.optimize.target_angle = largest_angle;
     SL_TRY(exp_mesh_load(source, &mesh, &run->diag));
-    SL_TRY(make_atlas(run, &mesh, &def, &atlas, &row));
+    SL_TRY(make_atlas(run, source->name, &mesh, &def, &atlas, &row));
     *ours = (peer){.tool = "ours",
                    .charts = row.charts,
                    .seam = row.seam,
@@ -116,8 +113,8 @@ static sl_status reach(exp_run *run, const exp_source *source, const peer *their
     exp_claims_measure(claims, source->name, "peers: check passed", row.made && row.passed);
     exp_claims_measure(claims, source->name, "peers: charts over UVAtlas's", row.charts / theirs->charts);
     exp_claims_measure(claims, source->name, "peers: seams over UVAtlas's", row.seam / theirs->seam);
-    fprintf(stderr, "%s at UVAtlas's L2: %d charts for %.0f, seams %.2f for %.2f, %.1f s\n", source->name, row.charts,
-            theirs->charts, row.seam, theirs->seam, row.seconds);
+    fprintf(stderr, "%s at UVAtlas's L2: %d chart%s for %.0f, seams %.2f for %.2f, %.1f s\n", source->name, row.charts,
+            sl_plural(row.charts), theirs->charts, row.seam, theirs->seam, row.seconds);
 cleanup:
     sl_atlas_free(atlas);
     exp_mesh_clear(&mesh);

@@ -1,6 +1,6 @@
 /* The best atlases: fewer charts and shorter seams by search, beside the paper's own cuts. */
 #include "atlases.h"
-
+#include "support/csv.h"
 #include "support/pictures.h"
 
 #include <math.h>
@@ -61,11 +61,12 @@ static sl_status list_models(const exp_run *run, results *r)
 static void figure(exp_page *page, const char *name, int variant, const atlas_row *row, const char *file)
 {
     char alt[160], caption[400];
-    snprintf(alt, sizeof alt, "%s in %d charts, its atlas beside it", name, row->charts);
-    snprintf(caption, sizeof caption,
-             "<b>%s</b>, %s: %d charts, seams %.2f, L2 %.3f, &sigma;<sub>1</sub>/&sigma;<sub>2</sub> %.3f, fill %.2f%s",
-             name, variant_name[variant], row->charts, row->seam, row->l2, row->angle, row->fill,
-             row->missed > 0 ? ", <b>off its targets</b>" : "");
+    snprintf(alt, sizeof alt, "%s in %d chart%s, its atlas beside it", name, row->charts, sl_plural(row->charts));
+    snprintf(
+        caption, sizeof caption,
+        "<b>%s</b>, %s: %d chart%s, seams %.2f, L2 %.3f, &sigma;<sub>1</sub>/&sigma;<sub>2</sub> %.3f, fill %.2f%s",
+        name, variant_name[variant], row->charts, sl_plural(row->charts), row->seam, row->l2, row->angle, row->fill,
+        row->missed > 0 ? ", <b>off its targets</b>" : "");
     exp_page_figure(page, row->passed ? "" : "no", file, alt, caption);
 }
 
@@ -106,7 +107,7 @@ static sl_status show_model(exp_run *run, exp_page *page, exp_claims *claims, co
     exp_page_html(page, "<div class=\"grid wide\">\n");
     for (int v = 0; v < RUNS; v++) {
         const sl_atlas_def def = variant_def(v, &row[PAPER]);
-        SL_TRY(make_atlas(run, &mesh, &def, &atlas, &row[v]));
+        SL_TRY(make_atlas(run, source->name, &mesh, &def, &atlas, &row[v]));
         if (row[v].made && v != SAME_L2) {
             char file[128];
             snprintf(file, sizeof file, "%s%s-%s.png", source->generated ? "" : "corpus-", source->name,
@@ -145,10 +146,7 @@ static void table_row(exp_page *page, const char *name, int variant, const atlas
     exp_page_cell(page, "%d", row->facets);
     exp_page_cell(page, "%d", row->charts);
     exp_page_cell(page, "%d", row->copies);
-    exp_page_cell(page, "%.3f", row->seam);
-    exp_page_cell(page, "%.4f", row->l2);
-    exp_page_cell(page, "%.3f", row->angle);
-    exp_page_cell(page, "%.3f", row->fill);
+    number_cells(page, row->seam, row->l2, row->angle, row->fill);
     exp_page_cell(page, isnan(row->axis) ? "&ndash;" : "%.0f %%", 100.0 * row->axis);
     exp_page_cell(page, row->passed ? "proven" : "<b>not valid</b>");
     exp_page_row_end(page);
@@ -179,31 +177,27 @@ static sl_status write_csvs(exp_run *run, const results *r)
 {
     sl_status status = SL_OK;
     sl_writer *numbers = NULL, *timings = NULL;
-    char path[EXP_PATH];
-    SL_TRY(exp_path(run, "atlases.csv", path));
-    SL_TRY(sl_writer_create(path, &numbers, &run->diag));
-    SL_TRY(exp_path(run, "timings.csv", path));
-    SL_TRY(sl_writer_create(path, &timings, &run->diag));
-    sl_writer_text(numbers, "mesh,settings,facets,charts,copies,passed,missed,seam,l2,angle,fill,axis\n");
-    sl_writer_text(timings, "mesh,settings,seconds");
+    char header[256] = "mesh,settings,seconds";
     for (int s = 0; s < STAGES; s++) {
-        sl_writer_format(timings, ",%s", stage_name[s]);
+        const size_t used = strlen(header);
+        snprintf(header + used, sizeof header - used, ",%s", stage_name[s]);
     }
-    sl_writer_text(timings, "\n");
+    SL_TRY(exp_csv_open(run, "atlases.csv", "mesh,settings,facets,charts,copies,passed,missed,seam,l2,angle,fill,axis",
+                        &numbers));
+    SL_TRY(exp_csv_open(run, "timings.csv", header, &timings));
     for (int32_t k = 0; k < r->count; k++) {
         for (int v = 0; v < RUNS; v++) {
             const atlas_row *row = &r->row[k][v];
-            const double number[] = {row->seam, row->l2, row->angle, row->fill, row->axis};
+            const double number[] = {row->seam, row->l2, row->angle, row->fill};
             if (!row->made) {
                 continue;
             }
             sl_writer_format(numbers, "%s,%s,%d,%d,%d,%d,%d", r->source[k].name, variant_key[v], row->facets,
                              row->charts, row->copies, row->passed, row->missed + row->failed);
-            for (size_t i = 0; i < SL_COUNTOF(number); i++) {
-                sl_writer_text(numbers, ",");
-                if (!isnan(number[i])) {
-                    sl_writer_double(numbers, number[i]);
-                }
+            exp_csv_numbers(numbers, number, SL_COUNTOF(number));
+            sl_writer_text(numbers, ",");
+            if (!isnan(row->axis)) {
+                sl_writer_double(numbers, row->axis);
             }
             sl_writer_text(numbers, "\n");
             sl_writer_format(timings, "%s,%s,%.3f", r->source[k].name, variant_key[v], row->seconds);
@@ -213,12 +207,8 @@ static sl_status write_csvs(exp_run *run, const results *r)
             sl_writer_text(timings, "\n");
         }
     }
-    status = sl_writer_commit(numbers, &run->diag);
-    numbers = NULL;
-    if (status == SL_OK) {
-        status = sl_writer_commit(timings, &run->diag);
-        timings = NULL;
-    }
+    SL_TRY(exp_csv_close(run, &numbers));
+    SL_TRY(exp_csv_close(run, &timings));
 cleanup:
     sl_writer_abandon(numbers);
     sl_writer_abandon(timings);
