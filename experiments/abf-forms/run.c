@@ -53,7 +53,7 @@ cleanup:
     return status == SL_SINGULAR ? SL_OK : status;
 }
 
-/* The disks that a few default cuts of the model leave, whatever their stretch. */
+/* The disks that a few spectral cuts of the model leave, whatever their stretch. */
 static sl_status try_model(exp_run *run, const char *model, int32_t seed, form *forms)
 {
     sl_status status = SL_OK;
@@ -169,7 +169,7 @@ static sl_status show_all(exp_run *run, exp_page *page, exp_claims *claims)
 int main(int argc, char **argv)
 {
     return exp_main(argc, argv, "abf-forms", "Forms of ABF++ compared",
-                    "Every disk that five default cuts leave of each model in <code>seeds.csv</code> (model and "
+                    "Every disk that five spectral cuts leave of each model in <code>seeds.csv</code> (model and "
                     "seed), flattened by each form from the same start, at most 40 iterations, |&nabla;L| &le; "
                     "1e-6 asked for.",
                     EXPECTED_CSV, show_all);

@@ -1,4 +1,4 @@
-# Charts and seams of each change over those of the defaults.
+# Charts and seams of each change over those of the base, preset fast.
 set terminal svg size 900,560 noenhanced font 'system-ui,sans-serif,12' rounded
 set datafile separator ','
 set border 1 lw 0.8 lc rgb '#555a60'
@@ -8,7 +8,7 @@ set logscale x 2
 set xrange [0.45:*]
 set yrange [16.8:0.2]
 set lmargin 44
-set xlabel 'over the defaults'
+set xlabel 'over preset fast'
 set grid xtics lw 0.5 lc rgb '#d8dbe0'
 set key bottom right
 set arrow from 1,graph 0 to 1,graph 1 nohead lw 1.4 lc rgb '#1a7f4b' back

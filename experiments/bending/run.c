@@ -119,8 +119,8 @@ static void show_picture(exp_page *page, int model, int method, const outcome *o
     snprintf(alt, sizeof alt, "%s bent by %.0f degrees, cut by %s", models[model].name, o->degrees,
              method_title[method]);
     snprintf(caption, sizeof caption,
-             "<b>%s</b>, %.0f&deg;: %d charts; the first cut tells front from back for %.0f %% of the surface",
-             method_title[method], o->degrees, o->charts, 100.0 * o->equator);
+             "<b>%s</b>, %.0f&deg;: %d chart%s; the first cut tells front from back for %.0f %% of the surface",
+             method_title[method], o->degrees, o->charts, sl_plural(o->charts), 100.0 * o->equator);
     exp_page_figure(page, "", file, alt, caption);
 }
 

@@ -70,10 +70,10 @@ static void introduce(exp_page *page)
     exp_page_html(
         page,
         "<p>The paper compares segmentations by eye. Here every generated model is unwrapped by spectral cuts and by "
-        "seven other ways to cut, <b>as cut</b> (the paper as printed) and at the <b>default</b> settings of the "
-        "recursion (<code>--preset fast</code>: cuts "
-        "smoothed by a band minimum cut, loops joined, neighbours sewn while they stay valid), and by the search for "
-        "fewer charts and shorter seams (<b>best</b>: <code>--preset best</code>). Only the cut differs: recursion "
+        "seven other ways to cut, <b>as cut</b> (the paper as printed) and by the recursion as it stands now "
+        "(<b>fast</b>: <code>--preset fast</code>, cuts smoothed by a band minimum cut, loops joined, neighbours sewn "
+        "while they stay valid), and by the search for fewer charts and shorter seams (<b>best</b>: <code>--preset "
+        "best</code>, the default). Only the cut differs: recursion "
         "until valid, flattening and its bounds are the same for all; symmetry is not used.</p>\n<ul>\n"
         "<li><b>Fiedler</b>: always the first eigenvector that is not constant.</li>\n"
         "<li><b>PCA</b>: the plane across the shortest principal axis of the surface.</li>\n"

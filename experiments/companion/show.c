@@ -9,7 +9,7 @@ static void name_way(exp_page *page, int way)
     exp_page_cell(page, "%s, %s", way == EXP_BEST ? "best" : exp_method_title[way % EXP_METHODS],
                   way == EXP_BEST          ? "by search"
                   : way / EXP_METHODS == 0 ? "as cut"
-                                           : "default");
+                                           : "fast");
 }
 
 /* A row of the medians, or of how many models a way is better and worse on. */
@@ -39,7 +39,7 @@ cleanup:
     return status;
 }
 
-/* Medians, or wins. paper: the default and the search over the paper's method; else each over its own setting's. */
+/* Medians, or wins. paper: the recursion and the search over the paper's method; else each over its own setting's. */
 static sl_status summary(exp_page *page, const companion *all, bool wins, bool paper)
 {
     sl_status status = SL_OK;
@@ -49,7 +49,7 @@ static sl_status summary(exp_page *page, const companion *all, bool wins, bool p
     for (int way = 0; way < EXP_WAYS && status == SL_OK; way++) {
         if (!paper) {
             status = summary_row(page, all, way, exp_way_base(way), wins);
-        } else if (way == EXP_DEFAULT * EXP_METHODS + EXP_SPECTRAL || way == EXP_BEST) {
+        } else if (way == EXP_FAST * EXP_METHODS + EXP_SPECTRAL || way == EXP_BEST) {
             status = summary_row(page, all, way, EXP_SPECTRAL, wins);
         }
     }
@@ -62,7 +62,8 @@ sl_status show_summary(exp_page *page, const companion *all)
     sl_status status = SL_OK;
     exp_page_html(page,
                   "<p>Medians over %d models of each number over that of the spectral cuts at the same setting "
-                  "(the search: over the default); then on how many models the method is better / worse.</p>\n",
+                  "(the search: over those of <code>--preset fast</code>); then on how many models the method is "
+                  "better / worse.</p>\n",
                   all->count);
     SL_TRY(summary(page, all, false, false));
     SL_TRY(summary(page, all, true, false));
@@ -145,8 +146,8 @@ static void added_row(exp_page *page, const char *mesh, const char *who, const e
 
 void show_added(exp_page *page, const companion *all)
 {
-    static const int ours[] = {EXP_SPECTRAL, EXP_DEFAULT * EXP_METHODS + EXP_SPECTRAL, EXP_BEST};
-    static const char *const ours_title[] = {"spectral, as cut", "spectral, default", "best"};
+    static const int ours[] = {EXP_SPECTRAL, EXP_FAST * EXP_METHODS + EXP_SPECTRAL, EXP_BEST};
+    static const char *const ours_title[] = {"spectral, as cut", "spectral, fast", "best"};
     if (all->added == 0) {
         return;
     }
@@ -173,16 +174,17 @@ static void show_metric(exp_page *page, const companion *all, int setting, int m
 {
     static const char *const format[EXP_METRICS] = {"%.0f", "%.2f", "%.3f", "%.3f", "%.3f", "%.1f", "%.2f"};
     char header[256] = "mesh|facets";
-    const int ways = setting == EXP_DEFAULT ? EXP_METHODS + 1 : EXP_METHODS; /* the search stands beside the default */
+    const int ways =
+        setting == EXP_FAST ? EXP_METHODS + 1 : EXP_METHODS; /* the search stands beside what it starts from */
     for (int k = 0; k < ways; k++) {
         const size_t used = strlen(header);
         snprintf(header + used, sizeof header - used, "|%s", k == EXP_METHODS ? "best" : exp_method_short[k]);
     }
     exp_page_html(page, "<details><summary>%s of every model, %s</summary>\n", exp_metric_title[metric],
-                  setting == EXP_AS_CUT ? "as cut" : "default settings");
+                  setting == EXP_AS_CUT ? "as cut" : "preset fast");
     exp_page_table_begin(page, header);
     for (int32_t i = 0; i < all->count; i++) {
-        const exp_numbers *o = &all->model[i].way[setting * EXP_METHODS]; /* best follows the default's methods */
+        const exp_numbers *o = &all->model[i].way[setting * EXP_METHODS]; /* best follows the methods of fast */
         bool bad = false;
         for (int k = 0; k < ways; k++) {
             bad |= o[k].failed || o[k].bad;

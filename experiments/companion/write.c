@@ -24,6 +24,9 @@ cleanup:
     return status;
 }
 
+/* The columns of write_row. */
+#define NUMBERS "charts,seam,l2,angle,area,turning,axis,overlap,fill,flipped,bad,failed"
+
 static void write_row(sl_writer *w, const exp_numbers *o)
 {
     sl_writer_format(w, "%.0f", o->metric[EXP_CHARTS]);
@@ -36,10 +39,7 @@ static sl_status write_numbers(exp_run *run, const companion *all)
 {
     sl_status status = SL_OK;
     sl_writer *w = NULL;
-    SL_TRY(exp_csv_open(run, "methods.csv",
-                        "mesh,facets,setting,method,charts,seam,l2,angle,area,turning,axis,overlap,fill,flipped,bad,"
-                        "failed",
-                        &w));
+    SL_TRY(exp_csv_open(run, "methods.csv", "mesh,facets,setting,method," NUMBERS, &w));
     for (int32_t k = 0; k < all->count; k++) {
         const model *m = &all->model[k];
         for (int way = 0; way < EXP_WAYS; way++) {
@@ -57,9 +57,7 @@ static sl_status write_added(exp_run *run, const companion *all)
 {
     sl_status status = SL_OK;
     sl_writer *w = NULL;
-    SL_TRY(exp_csv_open(run, "added.csv",
-                        "tool,mesh,facets,known,charts,seam,l2,angle,area,turning,axis,overlap,fill,flipped,bad,failed",
-                        &w));
+    SL_TRY(exp_csv_open(run, "added.csv", "tool,mesh,facets,known," NUMBERS, &w));
     for (int32_t k = 0; k < all->added; k++) {
         const added *a = &all->add[k];
         sl_writer_format(w, "%s,%s,%d,%d,", a->from->name, a->mesh, a->facets, a->model >= 0);
@@ -71,7 +69,7 @@ cleanup:
     return status;
 }
 
-/* Wins and losses; what the methods' medians are. */
+/* On how many models each method is better, equal and worse, and its median. */
 static sl_status write_wins(exp_run *run, const companion *all)
 {
     sl_status status = SL_OK;

@@ -101,8 +101,8 @@ static sl_status draw_rule(exp_run *run, exp_page *page, const hand_work *w, con
     if (first_cut) {
         snprintf(caption, sizeof caption, "<b>%s</b> takes v<sub>%d</sub>", hand_rule_title[rule], choice->vector);
     } else {
-        snprintf(caption, sizeof caption, "<b>%s</b>: %d charts, seams %.2f diagonals", hand_rule_title[rule],
-                 choice->charts, choice->seam);
+        snprintf(caption, sizeof caption, "<b>%s</b>: %d chart%s, seams %.2f diagonals", hand_rule_title[rule],
+                 choice->charts, sl_plural(choice->charts), choice->seam);
     }
     const sl_status status = exp_draw_charts(run, mesh, w->s.triangulation, seg->face_chart, &view, &picture, file);
     if (status == SL_OK) {

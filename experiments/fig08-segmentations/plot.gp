@@ -1,4 +1,4 @@
-# Charts and seams a mesh needs: default, the paper's settings, the search.
+# Charts and seams a mesh needs: preset fast, the paper's settings, the search.
 set terminal svg size 1000,620 noenhanced font 'system-ui,sans-serif,12' rounded
 set output 'charts.svg'
 set datafile separator ','
@@ -15,13 +15,13 @@ set xtics 1 format ''
 set ylabel 'charts' textcolor rgb '#333840'
 set yrange [0.8:*]
 plot 'segmentations.csv' skip 1 using 1:(number('paper', 6)) with points pt 7 ps 0.7 lc rgb '#8a929c' title 'as the paper', \
-     '' skip 1 using 1:(number('default', 6)) with points pt 7 ps 0.8 lc rgb '#1a7f4b' title 'default', \
+     '' skip 1 using 1:(number('fast', 6)) with points pt 7 ps 0.8 lc rgb '#1a7f4b' title 'fast', \
      '' skip 1 using 1:(number('best', 6)) with points pt 5 ps 0.6 lc rgb '#2f6fb5' title 'best'
 unset key
 set xtics format '%g' rotate by 50 right
 set ylabel 'seams / diagonal'
 set yrange [0.5:*]
 plot 'segmentations.csv' skip 1 using 1:(number('paper', 10)):xtic(2) with points pt 7 ps 0.7 lc rgb '#8a929c', \
-     '' skip 1 using 1:(number('default', 10)) with points pt 7 ps 0.8 lc rgb '#1a7f4b', \
+     '' skip 1 using 1:(number('fast', 10)) with points pt 7 ps 0.8 lc rgb '#1a7f4b', \
      '' skip 1 using 1:(number('best', 10)) with points pt 5 ps 0.6 lc rgb '#2f6fb5'
 unset multiplot

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-const char *const preset_name[PRESETS] = {"default", "paper", "best"};
+const char *const preset_name[PRESETS] = {"fast", "paper", "best"};
 
 static bool warned(const sl_atlas *atlas, int32_t chart)
 {

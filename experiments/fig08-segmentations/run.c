@@ -1,4 +1,4 @@
-/* Figure 8: segmentations of all meshes at hand, by the default, the paper's settings and the search. */
+/* Figure 8: segmentations of all meshes at hand, by `--preset fast`, the paper's settings and the search. */
 #include "segmentations.h"
 #include "support/failures.h"
 #include "support/main.h"
@@ -62,7 +62,7 @@ static void hold_claims(exp_claims *claims, const exp_source *source, int preset
     exp_claims_measure(claims, source->name, "facets without a chart", facets_without_chart(atlas));
     exp_claims_measure(claims, source->name, "fill of the page", row->fill);
     exp_claims_measure(claims, source->name, "worst L2 of charts without a warning", row->l2_unwarned);
-    if (preset == DEFAULT && source->generated) {
+    if (preset == FAST && source->generated) {
         exp_claims_measure(claims, source->name, "charts", row->charts);
     }
 }
@@ -76,18 +76,19 @@ static sl_status make_atlas(exp_run *run, exp_page *page, const exp_source *sour
     char file[128], alt[160], caption[320];
     const sl_atlas_def def = preset_def(preset);
     const sl_view view = exp_view_of(source->name);
-    const sl_picture picture = exp_picture(run, preset == DEFAULT ? LARGE_WIDTH : SMALL_WIDTH,
-                                           preset == DEFAULT ? LARGE_HEIGHT : SMALL_HEIGHT);
+    const sl_picture picture =
+        exp_picture(run, preset == FAST ? LARGE_WIDTH : SMALL_WIDTH, preset == FAST ? LARGE_HEIGHT : SMALL_HEIGHT);
     const double start = exp_cpu_seconds();
     SL_TRY(sl_unwrap(&mesh->polygons, &def, &run->context, &atlas, &run->diag));
     *row = row_of(atlas, &mesh->polygons, mesh->generated, exp_cpu_seconds() - start);
     hold_claims(claims, source, preset, atlas, row);
     snprintf(file, sizeof file, "%s%s-%s.png", source->generated ? "" : "corpus-", source->name, preset_name[preset]);
     SL_TRY(exp_draw_atlas(run, atlas, &view, &picture, file));
-    snprintf(alt, sizeof alt, "%s cut into %d charts, its atlas beside it", source->name, row->charts);
-    snprintf(caption, sizeof caption, "<b>%s</b>%s, %s: %d charts, seams %.2f diagonals, L2 %.3f, worst %.3f",
-             source->name, source->generated ? "" : " (corpus)", preset_name[preset], row->charts, row->seam,
-             row->l2_mean, row->l2_worst);
+    snprintf(alt, sizeof alt, "%s cut into %d chart%s, its atlas beside it", source->name, row->charts,
+             sl_plural(row->charts));
+    snprintf(caption, sizeof caption, "<b>%s</b>%s, %s: %d chart%s, seams %.2f diagonals, L2 %.3f, worst %.3f",
+             source->name, source->generated ? "" : " (corpus)", preset_name[preset], row->charts,
+             sl_plural(row->charts), row->seam, row->l2_mean, row->l2_worst);
     exp_page_figure(page, row->passed ? "" : "no", file, alt, caption);
 cleanup:
     sl_atlas_free(atlas);
@@ -109,9 +110,9 @@ static sl_status show_presets(exp_run *run, exp_page *page, exp_claims *claims, 
         exp_failed(run, name, &status);
     }
     exp_page_html(page, "</div>\n</div>\n");
-    fprintf(stderr, "%s: %d charts, %.1f s; as the paper: %d, %.1f s; best: %d, %.1f s\n", source->name,
-            row[DEFAULT].charts, row[DEFAULT].seconds, row[PAPER].charts, row[PAPER].seconds, row[BEST].charts,
-            row[BEST].seconds);
+    fprintf(stderr, "%s: %d chart%s, %.1f s; as the paper: %d, %.1f s; best: %d, %.1f s\n", source->name,
+            row[FAST].charts, sl_plural(row[FAST].charts), row[FAST].seconds, row[PAPER].charts, row[PAPER].seconds,
+            row[BEST].charts, row[BEST].seconds);
     return status;
 }
 
@@ -133,7 +134,8 @@ static void introduce(exp_page *page)
         page,
         "<p>The paper's Figure 8 shows segmentations of some of 36 models, not public either. Here: every "
         "generated mesh, and every mesh of the corpus folder where one is given (a few with <code>--quick</code>). "
-        "The large picture is the default (lookahead, loops joined, cuts smoothed, neighbours sewn while they stay "
+        "The large picture is <code>--preset fast</code> (lookahead, loops joined, cuts smoothed, neighbours sewn "
+        "while they stay "
         "valid, symmetry used); beside it the paper as printed (longest seam, nothing after it), and the search for "
         "fewer charts and shorter seams (<code>--preset best</code>). Charts have one colour on the model and in the "
         "atlas; the checkerboard is the same on all. L2 is Sander's stretch per chart, 1 = isometric; "

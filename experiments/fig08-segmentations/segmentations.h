@@ -6,7 +6,7 @@
 #include "support/claims.h"
 #include "support/methods.h"
 
-enum { DEFAULT, PAPER, BEST, PRESETS };
+enum { FAST, PAPER, BEST, PRESETS };
 
 extern const char *const preset_name[PRESETS];
 

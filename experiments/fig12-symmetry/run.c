@@ -133,8 +133,8 @@ static sl_status show_model(exp_run *run, exp_page *page, exp_claims *claims, co
         snprintf(file, sizeof file, "%s-%s.png", r->name, k == 0 ? "without" : "with");
         SL_TRY(draw(run, atlas, chosen, &view, &picture, file));
         snprintf(alt, sizeof alt, "%s and its atlas %s symmetry", r->name, k == 0 ? "without" : "with");
-        snprintf(caption, sizeof caption, "<b>%s</b> %s symmetry: %d charts%s", r->name, k == 0 ? "without" : "with",
-                 r->charts[k],
+        snprintf(caption, sizeof caption, "<b>%s</b> %s symmetry: %d chart%s%s", r->name, k == 0 ? "without" : "with",
+                 r->charts[k], sl_plural(r->charts[k]),
                  k == 0  ? "."
                  : large ? ", the four halves of the legs on one place (orange)."
                          : ".");
@@ -142,7 +142,8 @@ static sl_status show_model(exp_run *run, exp_page *page, exp_claims *claims, co
         sl_atlas_free(atlas);
         atlas = NULL;
     }
-    fprintf(stderr, "%s: %.1f %% saved, %d charts, %d copies\n", r->name, 100.0 * r->saved, r->charts[1], r->copies);
+    fprintf(stderr, "%s: %.1f %% saved, %d chart%s, %d cop%s\n", r->name, 100.0 * r->saved, r->charts[1],
+            sl_plural(r->charts[1]), r->copies, r->copies == 1 ? "y" : "ies");
 cleanup:
     exp_page_html(page, "</div>\n");
     sl_atlas_free(atlas);

@@ -9,7 +9,7 @@ const char *const exp_method_title[EXP_METHODS] = {
     "VSA, by error", "Iso-charts",     "GPS embedding", "random"};
 const char *const exp_method_short[EXP_METHODS] = {"spectral", "Fiedler",    "PCA", "VSA 2",
                                                    "VSA",      "Iso-charts", "GPS", "random"};
-const char *const exp_setting_name[EXP_SETTINGS] = {"as-cut", "default"};
+const char *const exp_setting_name[EXP_SETTINGS] = {"as-cut", "fast"};
 const char *const exp_metric_name[EXP_METRICS] = {"charts", "seam", "l2", "angle", "area", "turning", "seconds"};
 const char *const exp_metric_title[EXP_METRICS] = {
     "charts",          "seam / diagonal", "L2",     "&sigma;<sub>1</sub>/&sigma;<sub>2</sub>",
@@ -26,12 +26,12 @@ const char *exp_way_method(int way)
 
 const char *exp_way_setting(int way)
 {
-    return exp_setting_name[way == EXP_BEST ? EXP_DEFAULT : way / EXP_METHODS];
+    return exp_setting_name[way == EXP_BEST ? EXP_FAST : way / EXP_METHODS];
 }
 
 int exp_way_base(int way)
 {
-    return (way == EXP_BEST ? EXP_DEFAULT : way / EXP_METHODS) * EXP_METHODS + EXP_SPECTRAL;
+    return (way == EXP_BEST ? EXP_FAST : way / EXP_METHODS) * EXP_METHODS + EXP_SPECTRAL;
 }
 
 sl_atlas_def exp_way_def(int way)

@@ -19,8 +19,8 @@ enum {
     EXP_METHODS
 };
 
-/* As the paper has it (nothing after the cut), and the default (smoothed, joined, sewn). */
-enum { EXP_AS_CUT, EXP_DEFAULT, EXP_SETTINGS };
+/* As the paper has it (nothing after the cut), and as `--preset fast` has it (smoothed, joined, sewn). */
+enum { EXP_AS_CUT, EXP_FAST, EXP_SETTINGS };
 
 /* A way: a method at a setting, way = setting * EXP_METHODS + method; and the search (`--preset best`) from spectral
  * cuts. */
@@ -45,7 +45,7 @@ extern const char *const exp_setting_name[EXP_SETTINGS];
 extern const char *const exp_metric_name[EXP_METRICS];  /* "charts" */
 extern const char *const exp_metric_title[EXP_METRICS]; /* HTML */
 
-/* A way's method ("best" for the search) and setting ("default" for the search, which is compared with it). */
+/* A way's method ("best" for the search) and setting ("fast" for the search, which starts from its cuts). */
 const char *exp_way_method(int way);
 const char *exp_way_setting(int way);
 /* The spectral cuts at that way's setting. */

@@ -18,8 +18,8 @@ typedef struct exp_sheet {
     sl_graph graph; /* of the patch's vertices over polygon edges */
 } exp_sheet;
 
-/* A chart of a generated model, cut into at most `charts` by the default rule (0 = as many as it takes). chart: its
- * number, -1 = the largest. SL_BAD_INPUT, SL_OUT_OF_MEMORY. */
+/* A chart of a generated model, cut into at most `charts` by the rule of `--preset fast` (0 = as many as it takes).
+ * chart: its number, -1 = the largest. SL_BAD_INPUT, SL_OUT_OF_MEMORY. */
 SL_NODISCARD sl_status exp_sheet_open(exp_run *run, const char *model, int32_t charts, int32_t chart, exp_sheet *sheet);
 void exp_sheet_close(exp_sheet *sheet);
 

@@ -131,7 +131,7 @@ static bool is_axis_cut(const sl_planted *planted, int32_t nf, const int32_t *pa
     return true;
 }
 
-/* The default settings cut its axis everywhere, and copies take their UVs through it. */
+/* The settings of `--preset fast` cut its axis everywhere, and copies take their UVs through it. */
 static bool is_used(const model *m, const sl_planted *planted)
 {
     const sl_mesh *mesh = m->shared_mesh;

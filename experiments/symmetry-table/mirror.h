@@ -19,7 +19,7 @@ typedef struct model {
     sl_symmetry *symmetry;   /* every automorphism */
     sl_facet_graph *graph;   /* of the facets, no pairs */
     sl_spectrum *spectrum;   /* VECTORS pairs; NULL where there are several components */
-    sl_mesh *shared_mesh;    /* cut by the default settings */
+    sl_mesh *shared_mesh;    /* cut by the settings of `--preset fast` */
     sl_segmentation *shared; /* and what they made */
     int32_t *cut[RULES];     /* nf: part of a facet after the first cut of each rule, no smoothing; NULL likewise */
 } model;
