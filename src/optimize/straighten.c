@@ -335,6 +335,21 @@ cleanup:
     return status;
 }
 
+/* Are all edges beside the charts that are made anew? An earlier success may have put a detour's into another. */
+static bool is_beside(const sl_opt_state *state, const sl_opt_trial *trial)
+{
+    for (int32_t k = 0; k < trial->nedge; k++) {
+        const int32_t side[2] = {trial->edge[k], state->surface->patch->twin[trial->edge[k]]};
+        for (int j = 0; j < 2; j++) {
+            const int32_t c = state->chart_of[side[j] / 3];
+            if (c != trial->old[0] && c != trial->old[1]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 /* Solves the trial of some detours beside the same two charts; trial->valid = embedded. */
 static sl_status make_trial(const sl_opt_state *state, detour *const *list, int32_t n, int32_t *cold,
                             sl_opt_trial *trial)
@@ -347,6 +362,9 @@ static sl_status make_trial(const sl_opt_state *state, detour *const *list, int3
     trial->old[0] = chart[0];
     trial->old[1] = chart[1] != chart[0] ? chart[1] : -1;
     SL_TRY(make_edges(state, list, n, mark_of, trial));
+    if (!is_beside(state, trial)) {
+        goto cleanup;
+    }
     SL_TRY(sl_opt_trial_make(state, trial));
     SL_TRY(find_moved(state, trial, &r));
     trial->valid = trial->valid && trial->nto == (trial->old[1] >= 0 ? 2 : 1);
