@@ -22,6 +22,12 @@ typedef struct star {
     double weight[SL_RING_MAX];
 } star;
 
+/* In line, which the library's fmax is not. */
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static void rest_of(const double a[3], const double b[3], double m[3], double *weight)
 {
     double n[3];
@@ -32,8 +38,8 @@ static void rest_of(const double a[3], const double b[3], double m[3], double *w
         return;
     }
     const double la = sl_vec3_norm(a), lb = sl_vec3_norm(b), longer = la > lb ? la : lb;
-    const double x1 = fmax(la, LEAST_HEIGHT * longer), x2 = sl_vec3_dot(a, b) / x1;
-    const double y2 = fmax(sl_vec3_norm(n) / x1, LEAST_HEIGHT * longer);
+    const double x1 = larger(la, LEAST_HEIGHT * longer), x2 = sl_vec3_dot(a, b) / x1;
+    const double y2 = larger(sl_vec3_norm(n) / x1, LEAST_HEIGHT * longer);
     m[0] = 1.0 / x1;
     m[1] = -x2 / (x1 * y2);
     m[2] = 1.0 / y2;

@@ -22,7 +22,6 @@ static const double SINGULAR = 20.0; /* energy a unit of area of the star of a v
 static const double HOPE = 3.0, FAR_L2 = 10.0;
 static const double FAR_ENERGY = 100.0; /* a unit of area; no chart worth having ends there */
 static const int32_t TRUSTED = 500;
-enum { SWEEPS = 4 };
 
 static sl_patch *level_patch_alloc(int32_t nv, int32_t nt)
 {
@@ -108,33 +107,6 @@ typedef struct descent {
     bool hopeless;
 } descent;
 
-/* Interior vertices whose star is far worse than what a minimum has are moved one by one; what the Newton steps after
- * that meet is no longer singular. */
-static void settle(const sl_patch *patch, double w, double *uv)
-{
-    int32_t ring[SL_RING_MAX], moved = 1;
-    for (int sweep = 0; sweep < SWEEPS && moved > 0; sweep++) {
-        moved = 0;
-        for (int32_t v = 0; v < patch->nv; v++) {
-            int32_t h = patch->outgoing[v], count = 0;
-            if (patch->border[v] != 0) {
-                continue;
-            }
-            do {
-                if (count < SL_RING_MAX) {
-                    ring[count] = patch->tri[sl_corner_next(h)];
-                }
-                count++;
-                h = patch->twin[sl_corner_prev(h)];
-            } while (h != patch->outgoing[v]);
-            if (count <= SL_RING_MAX) {
-                const sl_removal star = {.vertex = v, .count = count};
-                moved += sl_stretch_settle(patch->xyz, &star, ring, w, SINGULAR, uv);
-            }
-        }
-    }
-}
-
 /* Would the border's edge a - b meet another one? */
 static bool edge_is_free(const descent *d, int32_t a, int32_t b)
 {
@@ -213,8 +185,7 @@ static sl_status start_level(descent *d, int32_t l, const sl_patch *patch, const
     for (int32_t v = 0; v < patch->nv; v++) {
         memcpy(&uv[2 * (int64_t)v], &d->uv[2 * (int64_t)vertex[v]], 2 * sizeof *uv);
     }
-    settle(patch, d->def->w, uv);
-    return SL_OK;
+    return sl_stretch_settle_all(patch, d->def->w, SINGULAR, uv);
 }
 
 /* Minimises on level l. SL_BAD_INPUT when doubles have no embedding without flips. */
@@ -258,10 +229,7 @@ static sl_status climb(descent *d)
             status = SL_BAD_INPUT;
         }
     }
-    if (status == SL_OK) {
-        settle(d->patch, d->def->w, d->uv);
-    }
-    return status;
+    return status == SL_OK ? sl_stretch_settle_all(d->patch, d->def->w, SINGULAR, d->uv) : status;
 }
 
 /* Minimises the map of the whole, unless that is in vain. */
@@ -288,8 +256,8 @@ static sl_status try_guess(descent *d, sl_stretch_info *info, bool *solved)
     if (status != SL_OK || !*solved) {
         return is_no_map(status) ? SL_OK : status;
     }
-    settle(d->patch, d->def->w, d->uv);
-    status = finish(d, info);
+    status = sl_stretch_settle_all(d->patch, d->def->w, SINGULAR, d->uv);
+    status = status == SL_OK ? finish(d, info) : status;
     *solved = status == SL_OK && info->energy_after <= FAR_ENERGY;
     return is_no_map(status) ? SL_OK : status;
 }

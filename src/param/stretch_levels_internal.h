@@ -59,6 +59,10 @@ bool sl_stretch_insert(const double *xyz, const sl_removal *removal, const int32
 bool sl_stretch_settle(const double *xyz, const sl_removal *star_at, const int32_t *ring, double w, double limit,
                        double *uv);
 
+/* sl_stretch_settle of the interior vertices in turn, in a few sweeps. Those whose triangles all have less by a bound
+ * are passed over, which changes nothing. uv: finite. SL_OUT_OF_MEMORY. */
+SL_NODISCARD sl_status sl_stretch_settle_all(const sl_patch *patch, double w, double limit, double *uv);
+
 /* Moves the vertices of flipped triangles, and more around them each time, to the mean of their neighbours until none
  * is flipped; with `simple`, border edges that cross are pulled inwards, too. *mended = false where that does not come
  * to an end soon. SL_BAD_INPUT (not finite), SL_OUT_OF_MEMORY. */

@@ -174,6 +174,64 @@ static void unfolding_from_a_guess_ends_in_the_same_minimum(void **state)
     }
 }
 
+/* What sl_stretch_settle_all does, with every interior vertex looked at in each sweep. */
+static int32_t settle_plainly(const sl_patch *p, double w, double limit, double *uv)
+{
+    int32_t ring[SL_RING_MAX], moved = 1, all = 0;
+    for (int sweep = 0; sweep < 4 && moved > 0; sweep++) {
+        moved = 0;
+        for (int32_t v = 0; v < p->nv; v++) {
+            int32_t h = p->outgoing[v], count = 0;
+            while (p->border[v] == 0 && count <= SL_RING_MAX && (count == 0 || h != p->outgoing[v])) {
+                if (count < SL_RING_MAX) {
+                    ring[count] = p->tri[sl_corner_next(h)];
+                }
+                count++;
+                h = p->twin[sl_corner_prev(h)];
+            }
+            const sl_removal star = {.vertex = v, .count = count};
+            moved += p->border[v] == 0 && count <= SL_RING_MAX && sl_stretch_settle(p->xyz, &star, ring, w, limit, uv);
+        }
+        all += moved;
+    }
+    return all;
+}
+
+/* The bound by which vertices are passed over passes over none that would move, for weights of either sign, limits from
+ * what every star has to what none has, slivers and flips. */
+static void settling_passes_over_no_vertex_that_would_move(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x5e77);
+    int32_t moved = 0, resting = 0;
+    for (int trial = 0; trial < 60 * test_multiplier(); trial++) {
+        sl_patch *p =
+            trial % 2 == 0 ? chart_tube(8 + trial % 5, 6, 0.2, (uint64_t)trial) : chart_limbs(4, 3, 5, (uint64_t)trial);
+        const size_t size = 2 * (size_t)p->nv * sizeof(double);
+        double *uv = malloc(size), *plain = malloc(size);
+        const double w = test_uniform(&rng, -4.0, 1.0), limit = exp(test_uniform(&rng, 1.0, 6.0));
+        sl_stretch_def def = sl_stretch_default();
+        def.relative_decrease = 1e-2;
+        assert_int_equal(sl_stretch_unfold(p, &def, NULL, uv, NULL), SL_OK);
+        for (int32_t v = 0; v < p->nv; v++) {
+            for (int k = 0; k < 2 && test_index(&rng, 4) == 0; k++) {
+                uv[2 * v + k] += test_uniform(&rng, -0.1, 0.1);
+            }
+            p->xyz[3 * v + 1] *= trial % 5 == 0 ? 1e-3 : 1.0; /* slivers */
+        }
+        memcpy(plain, uv, size);
+        const int32_t steps = settle_plainly(p, w, limit, plain);
+        assert_int_equal(sl_stretch_settle_all(p, w, limit, uv), SL_OK);
+        assert_memory_equal(uv, plain, size);
+        moved += steps > 0;
+        resting += steps < p->nv / 4;
+        free(uv);
+        free(plain);
+        sl_patch_free(p);
+    }
+    assert_true(moved > 20 && resting > 20);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +239,7 @@ int main(void)
         cmocka_unit_test(borders_that_cross_are_parted),
         cmocka_unit_test(ends_that_meet_are_parted),
         cmocka_unit_test(unfolding_from_a_guess_ends_in_the_same_minimum),
+        cmocka_unit_test(settling_passes_over_no_vertex_that_would_move),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
