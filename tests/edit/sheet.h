@@ -114,4 +114,12 @@ static inline void refuse_line(sl_session *session, const char *line, sl_status 
     assert_int_equal(sl_session_lines(session), lines);
 }
 
+/* Where a facet's corner at a vertex lies. */
+static inline const double *uv_at(const sl_session *s, int32_t vertex, int32_t facet)
+{
+    const int32_t h = sl_session_find_corner(s, vertex, facet);
+    assert_true(h >= 0);
+    return sl_session_corner_uv(s) + 2 * (int64_t)h;
+}
+
 #endif

@@ -234,4 +234,10 @@ static inline sl_patch *chart_ring(int32_t m)
     return chart_make(2 * m, xyz, nt, tri);
 }
 
+/* Of a 2 x 2 matrix. */
+static inline double chart_determinant(const double J[4])
+{
+    return J[0] * J[3] - J[1] * J[2];
+}
+
 #endif
