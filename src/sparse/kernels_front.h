@@ -152,11 +152,13 @@ typedef struct eliminator {
     double scale[SL_SLAB];
 } eliminator;
 
-/* Factors the square tile D in place; the bad column or -1. */
+/* Factors the square tile D in place; the bad column or -1. The next pivot is computed apart, as the vectors compute
+ * it: through a store and a load it would come a third later, and narrow fronts wait for little else. */
 SL_KERNEL int32_t factor_tile(double *D, int32_t columns, sl_pivoting pivoting, int8_t *sign, eliminator *e)
 {
+    double d = D[0];
     for (int32_t j = 0; j < columns; j++) {
-        double *column = D + j * SL_SLAB, d = column[j];
+        double *column = D + j * SL_SLAB, *next = column + SL_SLAB;
         const double size = sign != NULL ? fabs(d) : d;
         if (!(size > pivoting.least && isfinite(d))) {
             if (!(pivoting.replacement > 0.0)) {
@@ -165,11 +167,16 @@ SL_KERNEL int32_t factor_tile(double *D, int32_t columns, sl_pivoting pivoting, 
             d = pivoting.replacement;
         }
         const double s = d < 0.0 ? -1.0 : 1.0, reciprocal = 1.0 / sqrt(fabs(d));
+        const double scale = sign != NULL ? s * reciprocal : reciprocal;
         if (sign != NULL) {
             sign[j] = (int8_t)s;
         }
-        e->scale[j] = s * reciprocal;
-        const vec done = vec_multiply(vec_load(column), vec_of(e->scale[j]));
+        if (j + 1 < columns) {
+            const double x = column[j + 1] * scale;
+            d = fma(-(sign != NULL ? s * x : x), x, next[j + 1]);
+        }
+        e->scale[j] = scale;
+        const vec done = vec_multiply(vec_load(column), vec_of(scale));
         vec_store(column, done);
         for (int32_t m = j + 1; m < columns; m++) {
             e->number[m][j] = s * column[m];
