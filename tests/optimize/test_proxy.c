@@ -137,14 +137,7 @@ static sl_mesh *ring_mesh(test_rng *rng, int32_t columns, int32_t rings)
         }
         first[++nf] = n;
     }
-    const sl_polygons polygons = {rows * columns, nf, xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(xyz);
-    free(first);
-    free(index);
-    return mesh;
+    return test_mesh_of(rows * columns, nf, xyz, first, index);
 }
 
 static void pieces_whose_coarse_seams_lead_nowhere_are_searched_as_they_are(void **state)

@@ -195,14 +195,7 @@ static sl_mesh *star_mesh(test_rng *rng, int32_t arms, int32_t length)
             b = next + 1;
         }
     }
-    sl_polygons polygons = {nv, nf, xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(xyz);
-    free(first);
-    free(index);
-    return mesh;
+    return test_mesh_of(nv, nf, xyz, first, index);
 }
 
 static void where_nothing_passes_the_fiedler_vector_s_sides_are_taken(void **state)

@@ -66,14 +66,7 @@ static sl_mesh *drum(test_rng *rng, int32_t around, int32_t along)
         }
         first[++f] = n;
     }
-    sl_polygons polygons = {nv, nf, xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(xyz);
-    free(first);
-    free(index);
-    return mesh;
+    return test_mesh_of(nv, nf, xyz, first, index);
 }
 
 /* The ends are plane: regions of their own. The barrel is divided along itself; over an arc of angle w the error is

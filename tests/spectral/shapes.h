@@ -13,6 +13,19 @@
 
 typedef enum test_facets { TEST_TRIANGLES, TEST_QUADS, TEST_MIXED } test_facets;
 
+/* The mesh of these polygons, whose arrays (malloc) it frees. */
+static inline sl_mesh *test_mesh_of(int32_t nv, int32_t nf, double *xyz, int32_t *first, int32_t *index)
+{
+    const sl_polygons polygons = {nv, nf, xyz, first, index};
+    sl_mesh *mesh = NULL;
+    sl_diag diag = sl_diag_none();
+    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
+    free(xyz);
+    free(first);
+    free(index);
+    return mesh;
+}
+
 /* A grid of nu x nv cells; wrapped directions share their first and last line of vertices. */
 typedef struct test_grid {
     int32_t nu, nv;
@@ -63,15 +76,9 @@ static inline sl_mesh *test_grid_mesh(test_grid *g, test_rng *rng, const uint8_t
             first[++nf] = n;
         }
     }
-    sl_polygons polygons = {g->rows * g->columns, nf, g->xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(first);
-    free(index);
-    free(g->xyz);
+    double *xyz = g->xyz;
     g->xyz = NULL;
-    return mesh;
+    return test_mesh_of(g->rows * g->columns, nf, xyz, first, index);
 }
 
 /* A curved patch with random heights. */
@@ -173,14 +180,7 @@ static inline sl_mesh *test_box_mesh(test_rng *rng, const double a[3], const int
             first[++nf] = corners;
         }
     }
-    sl_polygons polygons = {nv, nf, xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(xyz);
-    free(first);
-    free(index);
-    return mesh;
+    return test_mesh_of(nv, nf, xyz, first, index);
 }
 
 /* A closed body: six bent grids of a cube blown up to radius(direction), spikes[3 k ..] directions of bumps of given
@@ -244,15 +244,8 @@ static inline sl_mesh *test_spiky_mesh(test_rng *rng, int32_t n, int32_t nspike,
         }
         first[++nf] = corners;
     }
-    sl_polygons polygons = {nv, nf, xyz, first, index};
-    sl_mesh *mesh = NULL;
-    sl_diag diag = sl_diag_none();
-    assert_int_equal(sl_mesh_build(&polygons, &mesh, NULL, &diag), SL_OK);
-    free(xyz);
     free(name);
-    free(first);
-    free(index);
-    return mesh;
+    return test_mesh_of(nv, nf, xyz, first, index);
 }
 
 /* The facet graph of a whole mesh. */
