@@ -43,7 +43,7 @@ int32_t sl_opt_fine_vertex(const sl_opt_surface *coarse, const int32_t *vertex, 
     return vertex[coarse->mesh->input_vertex[coarse->mesh->origin[coarse->patch->corner[corner]]]];
 }
 
-/* The part of an arc from its halfedge `from` to `to` (not included) as a line of fine vertices. */
+/* The part of an arc from its halfedge `from` to `to` (not included, to > from) as a line of fine vertices. */
 static void load_line(carrying *c, const int32_t *arc, int32_t from, int32_t to)
 {
     const sl_opt_surface *s = c->coarse->surface;
@@ -54,7 +54,7 @@ static void load_line(carrying *c, const int32_t *arc, int32_t from, int32_t to)
         length += s->length[arc[k]] / s->unit * c->fine->surface->unit;
     }
     c->path.line[c->path.nline++] = sl_opt_fine_vertex(s, c->vertex, sl_corner_next(arc[to - 1]));
-    c->path.width = to > from && length > 0.0 ? length / (to - from) : 1.0;
+    c->path.width = length > 0.0 ? length / (to - from) : 1.0;
 }
 
 /* Does the line double back on itself? */
@@ -166,7 +166,7 @@ sl_status sl_opt_carry(const sl_opt_state *coarse, const int32_t *vertex, sl_opt
         SL_TRY(make_charts(fine, carried));
         *carried = *carried && fine->nchart == coarse->nchart;
     }
-    sl_near_path_clear(&c.path);
+    sl_near_path_clear(&c.path); /* not kept beside the solver's memory */
     if (*carried) {
         fine->w = fmin(fmax(coarse->w, LEAST_W), MOST_W);
         SL_TRY(sl_opt_guess(coarse, vertex, fine));
@@ -193,7 +193,7 @@ sl_status sl_opt_coarse_weights(const sl_opt_surface *fine, const sl_mesh *mesh,
     }
     for (int32_t h = 0; h < mesh->nh; h++) {
         if (mesh->twin[h] < h) {
-            continue; /* borders, which are never cut, and edges that have their turn */
+            continue; /* borders, which are never cut, and edges that had their turn */
         }
         for (int k = 0; k < 2; k++) {
             path.line[k] = vertex[mesh->input_vertex[mesh->origin[k == 0 ? h : mesh->twin[h]]]];

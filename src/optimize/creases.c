@@ -10,7 +10,7 @@ static const double CREASE = 30.0 * 0.017453292519943295; /* dihedral angle at w
 static const double DEVELOPABLE = 1.001;                  /* L2 of a part that needs no cut of its own */
 static const int32_t MOST_PARTS = 24, LEAST_FACETS = 12;  /* of a mesh; of a part in the mean */
 
-/* Facets joined over edges that are no crease, numbered by the first; *count is their number. */
+/* Labels parts of facets joined over edges that are no crease, in the order of their first facets. */
 static sl_status label_smooth_parts(const sl_mesh *mesh, int32_t *label, int32_t *count)
 {
     int32_t *stack = sl_alloc(mesh->nf, sizeof *stack);

@@ -2,6 +2,7 @@
 #include "optimize/near_path_internal.h"
 
 #include "base/memory.h"
+#include "geom/vec3.h"
 
 #include <math.h>
 
@@ -86,17 +87,15 @@ static double squared_distance(const sl_near_path *c, int32_t v)
     double least = HUGE_VAL;
     for (int32_t k = 0; k + 1 < c->nline; k++) {
         const double *a = xyz + 3 * (int64_t)c->line[k], *b = xyz + 3 * (int64_t)c->line[k + 1];
-        double ab = 0.0, ap = 0.0, sum = 0.0;
+        double ab[3], ap[3];
+        sl_vec3_sub(b, a, ab);
+        sl_vec3_sub(p, a, ap);
+        const double square = sl_vec3_dot(ab, ab);
+        const double s = square > 0.0 ? fmin(fmax(sl_vec3_dot(ab, ap) / square, 0.0), 1.0) : 0.0;
         for (int j = 0; j < 3; j++) {
-            ab += (b[j] - a[j]) * (b[j] - a[j]);
-            ap += (b[j] - a[j]) * (p[j] - a[j]);
+            ap[j] -= s * ab[j];
         }
-        const double s = ab > 0.0 ? fmin(fmax(ap / ab, 0.0), 1.0) : 0.0;
-        for (int j = 0; j < 3; j++) {
-            const double x = p[j] - a[j] - s * (b[j] - a[j]);
-            sum += x * x;
-        }
-        least = fmin(least, sum);
+        least = fmin(least, sl_vec3_dot(ap, ap));
     }
     return least;
 }
@@ -140,7 +139,7 @@ cleanup:
     return status;
 }
 
-/* Leaves the work as the next search wants it; parents stay. */
+/* Leaves the work as the next search wants it; parents stay, for the caller to follow. */
 static void forget(sl_near_path *c)
 {
     for (int32_t k = 0; k < c->ntouched; k++) {

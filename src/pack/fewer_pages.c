@@ -33,7 +33,7 @@ static int32_t least_loaded(const pages *p, int32_t but)
     return least;
 }
 
-/* The largest chart on a page that has not been moved from it; -1 = none. */
+/* The largest chart that is still on a page; -1 = none. */
 static int32_t largest_on(const pages *p, const sl_pose *pose, int32_t page)
 {
     int32_t largest = -1;
@@ -45,8 +45,8 @@ static int32_t largest_on(const pages *p, const sl_pose *pose, int32_t page)
     return largest;
 }
 
-/* Charts of the emptiest page go onto the middle of others, the largest first, each where there is most room; the last
- * page takes the number that has become free. */
+/* Charts of the emptiest page go onto the middle of others, the largest first, each onto the page with most room; the
+ * last page takes the number that has become free. */
 static void dissolve_page(pages *p, sl_pose *pose)
 {
     const int32_t gone = least_loaded(p, -1);
