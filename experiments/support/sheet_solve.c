@@ -12,21 +12,12 @@ static sl_status count_crossings(const exp_sheet *sheet, const double *uv, int32
     const sl_patch *p = sheet->patch;
     sl_status status = SL_OK;
     sl_certificate certificate;
-    int32_t *first = NULL, *border = NULL, *pairs = NULL;
-    SL_TRY(sl_patch_border(p, &first, &border));
-    const int32_t n = first[p->loops];
-    pairs = sl_alloc(2 * (int64_t)n, sizeof *pairs);
-    SL_TRY(pairs != NULL ? SL_OK : SL_OUT_OF_MEMORY);
-    for (int32_t k = 0; k < n; k++) {
-        pairs[2 * k] = p->tri[border[k]];
-        pairs[2 * k + 1] = p->tri[sl_corner_next(border[k])];
-    }
-    SL_TRY(sl_certify_embedding(uv, p->nt, p->tri, n, pairs, &certificate));
+    int32_t *border = NULL, count = 0;
+    SL_TRY(sl_patch_border_edges(p, &count, &border));
+    SL_TRY(sl_certify_embedding(uv, p->nt, p->tri, count, border, &certificate));
     *crossings = certificate.border_crossings;
 cleanup:
-    sl_free(first);
     sl_free(border);
-    sl_free(pairs);
     return status;
 }
 

@@ -204,3 +204,26 @@ sl_status sl_patch_border(const sl_patch *patch, int32_t **first, int32_t **half
     *halfedge = run;
     return SL_OK;
 }
+
+sl_status sl_patch_border_edges(const sl_patch *patch, int32_t *count, int32_t **edge)
+{
+    int32_t *first = NULL, *halfedge = NULL;
+    const sl_status status = sl_patch_border(patch, &first, &halfedge);
+    if (status != SL_OK) {
+        return status;
+    }
+    const int32_t n = first[patch->loops];
+    int32_t *pairs = sl_alloc(2 * (int64_t)n, sizeof *pairs);
+    for (int32_t b = 0; b < n && pairs != NULL; b++) {
+        pairs[2 * (int64_t)b] = patch->tri[halfedge[b]];
+        pairs[2 * (int64_t)b + 1] = patch->tri[sl_corner_next(halfedge[b])];
+    }
+    sl_free(first);
+    sl_free(halfedge);
+    if (pairs == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
+    *count = n;
+    *edge = pairs;
+    return SL_OK;
+}

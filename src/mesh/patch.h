@@ -56,4 +56,8 @@ double sl_patch_triangle_area(const sl_patch *patch, int32_t t);
  * halfedge[first[l] .. first[l + 1] - 1]. *first (loops + 1) and *halfedge are owned by the caller (sl_free). */
 SL_NODISCARD sl_status sl_patch_border(const sl_patch *patch, int32_t **first, int32_t **halfedge);
 
+/* The border's edges, loop by loop, as sl_certify_embedding takes them: *count pairs of vertices, tail and head. *edge
+ * is owned by the caller (sl_free). SL_OUT_OF_MEMORY: both are unchanged. */
+SL_NODISCARD sl_status sl_patch_border_edges(const sl_patch *patch, int32_t *count, int32_t **edge);
+
 #endif

@@ -425,7 +425,7 @@ sl_status sl_flatten(const sl_patch *patch, const sl_flatten_def *def, const sl_
         SL_TRY(sl_constraints_compile(patch, def->wishes.constraint_count, def->wishes.constraint, NULL, &table, NULL));
         c.abf.sectors = &table.view;
     }
-    SL_TRY(sl_stretch_list_border(patch, &c.nb, &c.border));
+    SL_TRY(sl_patch_border_edges(patch, &c.nb, &c.border));
     SL_TRY(flatten_chart(&c, one_facet));
 cleanup:
     sl_sectors_clear(&table);

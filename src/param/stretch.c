@@ -46,24 +46,6 @@ bool sl_stretch_all_finite(int64_t count, const double *x)
     return true;
 }
 
-sl_status sl_stretch_list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
-{
-    int32_t *first = NULL, *halfedge = NULL;
-    const sl_status status = sl_patch_border(patch, &first, &halfedge);
-    if (status != SL_OK) {
-        return status;
-    }
-    *nb = first[patch->loops];
-    *border = sl_alloc(2 * (int64_t)*nb, sizeof **border);
-    for (int32_t b = 0; b < *nb && *border != NULL; b++) {
-        (*border)[2 * b] = patch->tri[halfedge[b]];
-        (*border)[2 * b + 1] = patch->tri[sl_corner_next(halfedge[b])];
-    }
-    sl_free(first);
-    sl_free(halfedge);
-    return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
-}
-
 sl_status sl_stretch_border_is_simple(const sl_stretch *s, const double *uv, bool *simple)
 {
     sl_certificate certificate = {0};
@@ -173,7 +155,7 @@ sl_status sl_stretch_create(const sl_patch *patch, const double *uv, const sl_st
     SL_TRY(sl_stretch_pull_is_valid(def, patch->nv) ? SL_OK : SL_BAD_INPUT);
     SL_TRY(lay_out(s));
     if (def->simple_border) {
-        SL_TRY(sl_stretch_list_border(patch, &s->nb, &s->border));
+        SL_TRY(sl_patch_border_edges(patch, &s->nb, &s->border));
     }
     SL_TRY(sl_stretch_rest_init(patch, &s->store->rest));
     SL_TRY(start(s, uv));

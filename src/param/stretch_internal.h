@@ -136,9 +136,6 @@ SL_NODISCARD sl_status sl_stretch_direction(const sl_stretch_freedom *freedom, s
 double sl_stretch_step_bound(const sl_stretch_rest *rest, const int32_t *tri, const double *uv,
                              const double *direction);
 
-/* The border of all loops as *nb vertex pairs, as sl_certify_embedding takes it; *border is owned by the caller. */
-SL_NODISCARD sl_status sl_stretch_list_border(const sl_patch *patch, int32_t *nb, int32_t **border);
-
 bool sl_stretch_all_finite(int64_t count, const double *x);
 
 #endif

@@ -1,5 +1,4 @@
 /* A map that is right but for a few triangles, made flip-free by smoothing it around them. */
-#include "param/stretch_internal.h"
 #include "param/stretch_levels_internal.h"
 
 #include "base/memory.h"
@@ -145,7 +144,7 @@ sl_status sl_stretch_mend(const sl_patch *patch, bool simple, double *uv, bool *
     int32_t *list = sl_alloc(patch->nv, sizeof *list), *border = NULL, nb = 0;
     *mended = false;
     SL_TRY(marked == NULL || list == NULL ? SL_OUT_OF_MEMORY : SL_OK);
-    SL_TRY(simple ? sl_stretch_list_border(patch, &nb, &border) : SL_OK);
+    SL_TRY(simple ? sl_patch_border_edges(patch, &nb, &border) : SL_OK);
     for (int k = 0; k < ROUNDS && !*mended; k++) {
         bool parted = !simple;
         if (!mend_flips(patch, marked, list, uv)) {

@@ -62,6 +62,14 @@ static void check_patch(const sl_patch *p)
         }
     }
     assert_int_equal(runs, borders);
+    int32_t *edge = NULL, edges = -1;
+    assert_int_equal(sl_patch_border_edges(p, &edges, &edge), SL_OK);
+    assert_int_equal(edges, borders);
+    for (int32_t i = 0; i < edges; i++) {
+        assert_int_equal(edge[2 * i], p->tri[run[i]]);
+        assert_int_equal(edge[2 * i + 1], p->tri[sl_corner_next(run[i])]);
+    }
+    sl_free(edge);
     sl_free(first);
     sl_free(run);
 }
