@@ -34,7 +34,9 @@ void exp_page_abandon(exp_page *page)
 static void write_formatted(exp_page *page, const char *format, va_list args)
 {
     char text[4096];
-    vsnprintf(text, sizeof text, format, args);
+    const int length = vsnprintf(text, sizeof text, format, args);
+    SL_ASSERT(length >= 0 && length < (int)sizeof text); /* texts are ours: none is cut short */
+    (void)length;
     sl_writer_text(page->writer, text);
 }
 

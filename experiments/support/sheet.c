@@ -16,8 +16,7 @@ void exp_sheet_close(exp_sheet *sheet)
     *sheet = (exp_sheet){0};
 }
 
-/* Is halfedge c of the patch an edge of a polygon (and no diagonal of one)? */
-static bool is_polygon_edge(const exp_sheet *sheet, int32_t c)
+bool exp_sheet_is_edge(const exp_sheet *sheet, int32_t c)
 {
     const sl_patch *p = sheet->patch;
     return sl_next(sheet->mesh, p->corner[c]) == p->corner[sl_corner_next(c)];
@@ -35,7 +34,7 @@ static sl_status build_graph(exp_sheet *sheet)
     }
     for (int pass = 0; pass < 2; pass++) {
         for (int32_t c = 0; c < 3 * p->nt; c++) {
-            if (!is_polygon_edge(sheet, c) || (p->twin[c] >= 0 && p->twin[c] < c)) {
+            if (!exp_sheet_is_edge(sheet, c) || (p->twin[c] >= 0 && p->twin[c] < c)) {
                 continue;
             }
             const int32_t end[2] = {p->tri[c], p->tri[sl_corner_next(c)]};

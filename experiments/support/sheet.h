@@ -23,6 +23,9 @@ typedef struct exp_sheet {
 SL_NODISCARD sl_status exp_sheet_open(exp_run *run, const char *model, int32_t charts, int32_t chart, exp_sheet *sheet);
 void exp_sheet_close(exp_sheet *sheet);
 
+/* Is halfedge c of the patch an edge of a polygon (and no diagonal of one)? */
+bool exp_sheet_is_edge(const exp_sheet *sheet, int32_t c);
+
 /* Constraints under construction; the vertices are owned. */
 typedef struct exp_wish {
     int32_t count;

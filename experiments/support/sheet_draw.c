@@ -43,8 +43,7 @@ static int32_t edge_between(const exp_sheet *sheet, int32_t a, int32_t b)
     const sl_patch *p = sheet->patch;
     for (int32_t c = 0; c < 3 * p->nt; c++) {
         const int32_t from = p->tri[c], to = p->tri[sl_corner_next(c)];
-        if (((from == a && to == b) || (from == b && to == a)) &&
-            sl_next(sheet->mesh, p->corner[c]) == p->corner[sl_corner_next(c)]) {
+        if (((from == a && to == b) || (from == b && to == a)) && exp_sheet_is_edge(sheet, c)) {
             return p->corner[c];
         }
     }

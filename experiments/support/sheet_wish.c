@@ -48,18 +48,12 @@ typedef struct search {
     sl_graph graph; /* nodes: halfedges of the patch */
 } search;
 
-static bool is_polygon_edge(const exp_sheet *sheet, int32_t c)
-{
-    const sl_patch *p = sheet->patch;
-    return sl_next(sheet->mesh, p->corner[c]) == p->corner[sl_corner_next(c)];
-}
-
 /* May a line run along halfedge c? */
 static bool passable(const search *s, int32_t c)
 {
     const sl_patch *p = s->sheet->patch;
     const int32_t from = p->tri[c], to = p->tri[sl_corner_next(c)];
-    if (p->twin[c] < 0 || !is_polygon_edge(s->sheet, c) || (p->border[from] && from != s->a) ||
+    if (p->twin[c] < 0 || !exp_sheet_is_edge(s->sheet, c) || (p->border[from] && from != s->a) ||
         (p->border[to] && to != s->b)) {
         return false;
     }
@@ -190,8 +184,7 @@ static int32_t inward_edge(const exp_sheet *sheet, int32_t v)
     const sl_patch *p = sheet->patch;
     int32_t found = -1;
     for (int32_t c = 0; c < 3 * p->nt; c++) {
-        const int32_t h = p->corner[c];
-        if (p->tri[c] != v || p->twin[c] < 0 || sl_next(sheet->mesh, h) != p->corner[sl_corner_next(c)]) {
+        if (p->tri[c] != v || p->twin[c] < 0 || !exp_sheet_is_edge(sheet, c)) {
             continue;
         }
         if (found >= 0) {
@@ -218,7 +211,7 @@ static int32_t straight_on(const exp_sheet *sheet, int32_t c)
         if (d < 0) {
             return -1;
         }
-        edges += sl_next(sheet->mesh, p->corner[d]) == p->corner[sl_corner_next(d)];
+        edges += exp_sheet_is_edge(sheet, d);
         if (edges == 2) {
             return d;
         }

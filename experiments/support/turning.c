@@ -9,7 +9,12 @@ double exp_seam_turning(const sl_mesh *mesh)
     int32_t *degree = sl_calloc(mesh->nv, sizeof *degree), *ends = sl_alloc(2 * (int64_t)mesh->nv, sizeof *ends);
     double sum = 0.0;
     int32_t corners = 0;
-    for (int32_t h = 0; degree != NULL && ends != NULL && h < mesh->nh; h++) {
+    if (degree == NULL || ends == NULL) {
+        sl_free(degree);
+        sl_free(ends);
+        return NAN;
+    }
+    for (int32_t h = 0; h < mesh->nh; h++) {
         const int32_t v = mesh->origin[h], w = sl_target(mesh, h);
         if (mesh->sew[h] > h) {
             for (int k = 0; k < 2; k++) {
@@ -21,7 +26,7 @@ double exp_seam_turning(const sl_mesh *mesh)
             }
         }
     }
-    for (int32_t v = 0; degree != NULL && ends != NULL && v < mesh->nv; v++) {
+    for (int32_t v = 0; v < mesh->nv; v++) {
         if (degree[v] == 2) {
             double in[3], out[3], normal[3];
             sl_vec3_sub(mesh->xyz + 3 * (int64_t)v, mesh->xyz + 3 * (int64_t)ends[2 * (int64_t)v], in);

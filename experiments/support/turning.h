@@ -5,7 +5,8 @@
 
 #include "seamlab.h"
 
-/* Mean angle, in degrees, by which the seams turn at a vertex that two of their edges meet; 0 without any. */
+/* Mean angle, in degrees, by which the seams turn at a vertex that two of their edges meet; 0 without any; NaN where
+ * memory runs out, which breaks every claim about it. */
 double exp_seam_turning(const sl_mesh *mesh);
 
 #endif
