@@ -33,7 +33,7 @@ static sl_patch *slit_ring(int32_t n, double turn)
 static int32_t *border_of(const sl_patch *patch, int32_t *nb)
 {
     int32_t *pair = NULL;
-    assert_int_equal(sl_stretch_list_border(patch, nb, &pair), SL_OK);
+    assert_int_equal(sl_patch_border_edges(patch, nb, &pair), SL_OK);
     return pair;
 }
 
