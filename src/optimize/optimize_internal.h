@@ -139,16 +139,6 @@ SL_NODISCARD sl_status sl_opt_trial_guess(const sl_opt_state *state, sl_opt_tria
 /* A few Newton steps for ranking a cut. */
 SL_NODISCARD sl_status sl_opt_trial_probe(const sl_opt_state *state, int32_t steps, sl_opt_trial *trial);
 
-/* Solves the charts of a cut to the end, with borders that stay simple or ones that are let go, and proves them
- * embedded; trial->valid = trial->settled = the outcome. */
-SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, bool simple, sl_opt_trial *trial);
-
-/* The same of a sewing: first roughly, and to the end only where that leaves hope for the targets. */
-SL_NODISCARD sl_status sl_opt_trial_sew(const sl_opt_state *state, sl_opt_trial *trial);
-
-/* Replaces the charts of the state by the trial's, which is emptied. SL_OUT_OF_MEMORY leaves all as it was. */
-SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
-
 /* How a chart is solved. */
 typedef enum sl_opt_effort {
     SL_OPT_WARM,      /* from the map at hand; from nothing where that overlaps */
@@ -159,6 +149,16 @@ typedef enum sl_opt_effort {
     SL_OPT_GUESSED,   /* the same, from about where the vertices will be: the map at hand may have flips */
     SL_OPT_SEWN       /* from the map at hand, once; from nothing, once, where that has flips */
 } sl_opt_effort;
+
+/* Solves the charts of a cut to the end and proves them embedded; trial->valid = trial->settled = the outcome.
+ * SL_OPT_WARM_ONLY starts from the maps of the state's charts again, other efforts from the trial's own. */
+SL_NODISCARD sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_effort effort, sl_opt_trial *trial);
+
+/* The same of a sewing: first roughly, and to the end only where that leaves hope for the targets. */
+SL_NODISCARD sl_status sl_opt_trial_sew(const sl_opt_state *state, sl_opt_trial *trial);
+
+/* Replaces the charts of the state by the trial's, which is emptied. SL_OUT_OF_MEMORY leaves all as it was. */
+SL_NODISCARD sl_status sl_opt_apply(sl_opt_state *state, sl_opt_trial *trial);
 
 /* Solves a chart. uv: in and out; a map at hand must be flip-free. *embedded = proven. */
 SL_NODISCARD sl_status sl_opt_solve(const sl_opt_state *state, const sl_patch *patch, sl_opt_effort effort, double *uv,

@@ -348,6 +348,9 @@ sl_status sl_opt_part(const sl_opt_state *state, int32_t c, sl_opt_trial *trial)
         }
     }
     trial->valid = trial->valid && !again && trial->nedge > 0;
+    if (!trial->valid) {
+        forget_charts(trial); /* they may lack the last cuts */
+    }
 cleanup:
     return status;
 }

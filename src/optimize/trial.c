@@ -93,6 +93,15 @@ static void find_components(const sl_opt_state *state, const sl_opt_trial *trial
     m->first[m->ncomponents] = n;
 }
 
+/* The map that the state's charts have there. */
+static void take_map(const sl_opt_state *state, sl_opt_chart *chart)
+{
+    const sl_patch *p = chart->patch;
+    for (int32_t c = 0; c < 3 * p->nt; c++) {
+        memcpy(chart->uv + 2 * (int64_t)p->tri[c], state->uv + 2 * (int64_t)p->corner[c], 2 * sizeof *chart->uv);
+    }
+}
+
 static sl_status make_chart(const sl_opt_state *state, const sl_opt_trial *trial, const making *m, int32_t k,
                             sl_opt_chart *chart)
 {
@@ -109,9 +118,7 @@ static sl_status make_chart(const sl_opt_state *state, const sl_opt_trial *trial
     if (trial->sew) {
         return sl_opt_close_banks(state, trial, p, chart->uv);
     }
-    for (int32_t c = 0; c < 3 * p->nt; c++) {
-        memcpy(chart->uv + 2 * (int64_t)p->tri[c], state->uv + 2 * (int64_t)p->corner[c], 2 * sizeof *chart->uv);
-    }
+    take_map(state, chart);
     return SL_OK;
 }
 
@@ -180,12 +187,18 @@ static sl_status drop_crossing(sl_opt_trial *trial)
     return status;
 }
 
-sl_status sl_opt_trial_settle(const sl_opt_state *state, bool simple, sl_opt_trial *trial)
+sl_status sl_opt_trial_settle(const sl_opt_state *state, sl_opt_effort effort, sl_opt_trial *trial)
 {
     sl_status status = SL_OK;
+    trial->valid = trial->nto > 0;
+    for (int32_t k = 0; k < trial->nto; k++) {
+        trial->valid = trial->valid && sl_patch_is_disk(trial->to[k].patch);
+        if (effort == SL_OPT_WARM_ONLY) {
+            take_map(state, &trial->to[k]);
+        }
+    }
     for (int32_t k = 0; k < trial->nto && trial->valid; k++) {
-        SL_TRY(sl_opt_solve(state, trial->to[k].patch, simple ? SL_OPT_SIMPLE : SL_OPT_WARM, trial->to[k].uv,
-                            &trial->valid));
+        SL_TRY(sl_opt_solve(state, trial->to[k].patch, effort, trial->to[k].uv, &trial->valid));
     }
     trial->settled = trial->valid;
     if (trial->valid) {

@@ -1,6 +1,7 @@
 /* Charts that overlap themselves where they are stretched least, and the cuts that part them. */
 #include "mesh/build.h"
 #include "optimize/checks.h"
+#include "optimize/cut_internal.h"
 
 enum { ALONG = 72, ACROSS = 4, VERTICES = (ALONG + 1) * (ACROSS + 1) };
 
@@ -61,15 +62,15 @@ static sl_opt_state one_chart(const test_surface *s, const sl_optimize_def *def,
     return state;
 }
 
-/* A spiral that keeps clear of itself: embedded, but stretched. */
-static sl_opt_state wound_up(const test_surface *s, const sl_optimize_def *def, double turn, double inner)
+/* A spiral that moves out by `pitch` a turn and so keeps clear of itself: embedded, but stretched. */
+static sl_opt_state wound_up(const test_surface *s, const sl_optimize_def *def, double turn, double inner, double pitch)
 {
     const sl_patch *p = s->surface.patch;
     double *uv = malloc(2 * sizeof *uv * (size_t)p->nv);
     for (int32_t c = 0; c < 3 * p->nt; c++) {
         const int32_t v = s->mesh->origin[p->corner[c]]; /* the mesh keeps the order of the vertices */
         const double a = turn * (v / (ACROSS + 1)) / ALONG;
-        const double r = inner + (double)(v % (ACROSS + 1)) / ACROSS + 1.6 * a / (2.0 * acos(-1.0));
+        const double r = inner + (double)(v % (ACROSS + 1)) / ACROSS + pitch * a / (2.0 * acos(-1.0));
         uv[2 * p->tri[c]] = r * cos(a);
         uv[2 * p->tri[c] + 1] = r * sin(a);
     }
@@ -97,7 +98,7 @@ static void a_ramp_is_parted_into_turns_that_lie_nearly_flat(void **state)
         const sl_optimize_def def = sl_optimize_default();
         const double inner = test_uniform(&rng, 0.2, 0.9);
         test_surface s = test_surface_of(ramp(&rng, turn[trial % 4], inner, trial % 3 == 1));
-        sl_opt_state opt = wound_up(&s, &def, turn[trial % 4], inner);
+        sl_opt_state opt = wound_up(&s, &def, turn[trial % 4], inner, 1.6);
         test_check_state(&opt);
         sl_certificate before, free_map;
         assert_int_equal(sl_opt_certify(opt.chart[0].patch, opt.chart[0].uv, &before), SL_OK);
@@ -133,7 +134,7 @@ static void a_chart_that_does_not_overlap_is_not_parted(void **state)
     test_rng rng = test_rng_seed(0x9a28);
     const sl_optimize_def def = sl_optimize_default();
     test_surface s = test_surface_of(ramp(&rng, 5.0, 0.5, false));
-    sl_opt_state opt = wound_up(&s, &def, 5.0, 0.5);
+    sl_opt_state opt = wound_up(&s, &def, 5.0, 0.5, 1.6);
     sl_opt_trial parting;
     assert_int_equal(sl_opt_part(&opt, 0, &parting), SL_OK);
     assert_true(!parting.valid && parting.nedge == 0);
@@ -167,12 +168,102 @@ static void a_ramp_of_three_turns_meets_its_targets(void **state)
     }
 }
 
+static bool is_embedded(const sl_opt_trial *trial)
+{
+    bool embedded = trial->nto > 0;
+    for (int32_t k = 0; k < trial->nto; k++) {
+        sl_certificate certificate;
+        assert_int_equal(sl_opt_certify(trial->to[k].patch, trial->to[k].uv, &certificate), SL_OK);
+        embedded = embedded && certificate.embedded;
+    }
+    return embedded;
+}
+
+/* Halves of more than a turn each overlap when let go, whatever they start from. */
+static void halves_that_overlap_when_let_go_keep_the_map_of_their_chart(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x9a2a);
+    const double pi = acos(-1.0);
+    int32_t overlapped = 0;
+    for (int trial = 0; trial < 4 * test_multiplier(); trial++) {
+        const sl_optimize_def def = sl_optimize_default();
+        const double inner = test_uniform(&rng, 0.3, 0.9), turn = test_uniform(&rng, 4.9, 6.5) * pi;
+        test_surface s = test_surface_of(ramp(&rng, turn, inner, trial % 2 == 1));
+        sl_opt_state opt = wound_up(&s, &def, turn, inner, 1.1);
+        const double loss = sl_opt_loss(&opt, &opt.chart[0].sums);
+        sl_opt_trial halves[2] = {{0}, {0}};
+        int32_t count = 0;
+        assert_int_equal(sl_opt_bisections(&opt, 0, halves, &count), SL_OK);
+        assert_true(count > 0);
+        for (int32_t k = 0; k < count; k++) {
+            assert_int_equal(sl_opt_trial_make(&opt, &halves[k]), SL_OK);
+            assert_int_equal(sl_opt_trial_probe(&opt, 4, &halves[k]), SL_OK);
+            assert_int_equal(sl_opt_trial_settle(&opt, SL_OPT_WARM, &halves[k]), SL_OK);
+            overlapped += !halves[k].valid;
+            assert_int_equal(sl_opt_trial_settle(&opt, SL_OPT_WARM_ONLY, &halves[k]), SL_OK);
+            assert_true(halves[k].valid && halves[k].settled && is_embedded(&halves[k]));
+            assert_true(halves[k].loss < loss);
+            sl_opt_trial_clear(&halves[k]);
+        }
+        sl_opt_state_clear(&opt);
+        test_surface_clear(&s);
+    }
+    assert_true(overlapped > 0); /* what is to be shown at all */
+}
+
+static sl_opt_trial first_halves(const sl_opt_state *state)
+{
+    sl_opt_trial halves[2] = {{0}, {0}};
+    int32_t count = 0;
+    assert_int_equal(sl_opt_bisections(state, 0, halves, &count), SL_OK);
+    assert_true(count > 0);
+    sl_opt_trial_clear(&halves[1]);
+    assert_int_equal(sl_opt_trial_make(state, &halves[0]), SL_OK);
+    assert_int_equal(sl_opt_trial_probe(state, 4, &halves[0]), SL_OK);
+    return halves[0];
+}
+
+/* Not laid flat from nothing, as darts are. */
+static void halves_that_overlap_are_chosen_as_their_chart_lies(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0x9a2b);
+    for (int trial = 0; trial < 2 * test_multiplier(); trial++) {
+        sl_optimize_def def = sl_optimize_default();
+        const double inner = test_uniform(&rng, 0.3, 0.9), turn = test_uniform(&rng, 15.5, 20.0);
+        test_surface s = test_surface_of(ramp(&rng, turn, inner, trial % 2 == 1));
+        sl_opt_state opt = wound_up(&s, &def, turn, inner, 1.1);
+        sl_opt_trial held = first_halves(&opt);
+        assert_int_equal(sl_opt_trial_settle(&opt, SL_OPT_WARM_ONLY, &held), SL_OK);
+        sl_opt_pool pool = {0};
+        int64_t taken = -1;
+        assert_int_equal(sl_opt_pool_refresh(&opt, &pool), SL_OK);
+        while (pool.count > 0) {
+            sl_opt_pool_drop(&pool, pool.count - 1);
+        }
+        assert_int_equal(sl_reserve((void **)&pool.parted, &pool.parted_capacity, 1, sizeof *pool.parted), SL_OK);
+        pool.parted[pool.nparted++] = pool.stamp[0] = opt.chart[0].stamp; /* or parting would be chosen */
+        pool.trial[pool.count++] = first_halves(&opt);
+        assert_int_equal(sl_opt_choose(&opt, &pool, &taken), SL_OK);
+        assert_int_equal(taken, 0);
+        assert_true(pool.trial[0].promise > 0.0 && pool.trial[0].settled);
+        assert_true(pool.trial[0].loss == held.loss);
+        sl_opt_trial_clear(&held);
+        sl_opt_pool_clear(&pool);
+        sl_opt_state_clear(&opt);
+        test_surface_clear(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ramp_is_parted_into_turns_that_lie_nearly_flat),
         cmocka_unit_test(a_chart_that_does_not_overlap_is_not_parted),
         cmocka_unit_test(a_ramp_of_three_turns_meets_its_targets),
+        cmocka_unit_test(halves_that_overlap_when_let_go_keep_the_map_of_their_chart),
+        cmocka_unit_test(halves_that_overlap_are_chosen_as_their_chart_lies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

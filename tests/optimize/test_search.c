@@ -1,5 +1,6 @@
 /* Whole searches: their targets, their charts, threads, scales, options; and the steps of one. */
 #include "optimize/checks.h"
+#include "optimize/cut_internal.h"
 
 #include <stdatomic.h>
 
@@ -87,6 +88,7 @@ static void targets_out_of_reach_leave_valid_charts(void **state)
     def.max_cuts = 60;
     sl_segmentation *s = search(mesh, t, &def, 2, &info);
     assert_int_equal(info.failed, 0);
+    assert_int_equal(info.missed, 1);
     test_check_partition(mesh, s);
     for (int32_t c = 0; c < s->nchart; c++) {
         int32_t flips = 0;
@@ -162,6 +164,63 @@ static void a_target_out_of_reach_is_reported(void **state)
     sl_segmentation_free(s);
     sl_triangulation_free(t);
     sl_mesh_free(mesh);
+}
+
+/* Guesses at cuts of large charts are worth nothing there, but for the rough one. */
+static void a_nearly_flat_mesh_ends_where_no_cut_is_worth_anything(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xf1a7);
+    for (int trial = 0; trial < 3; trial++) {
+        sl_mesh *mesh = test_patch_mesh(&rng, 26, 25, TEST_TRIANGLES, NULL);
+        for (int32_t v = 0; v < mesh->nv; v++) { /* flat, nearly flat, rough */
+            mesh->xyz[3 * v + 2] = (trial == 0 ? 0.0 : trial == 1 ? 1e-6 : 1e-2) * test_uniform(&rng, -1.0, 1.0);
+        }
+        sl_triangulation *t = test_triangulate(mesh);
+        assert_true(t->nt > 1000);
+        sl_optimize_def def = sl_optimize_default();
+        def.target_stretch = def.target_angle = 1.0;
+        def.max_cuts = 8;
+        sl_optimize_info info;
+        sl_segmentation *s = search(mesh, t, &def, 1, &info);
+        assert_int_equal(info.failed, 0);
+        assert_int_equal(info.missed, 1); /* if by rounding */
+        assert_true(trial == 2 ? info.cuts > 0 : s->nchart == 1);
+        test_check_partition(mesh, s);
+        sl_segmentation_free(s);
+        sl_triangulation_free(t);
+        sl_mesh_free(mesh);
+    }
+}
+
+/* Cuts of large charts are only guessed at before one is chosen: their charts are made when they are needed. */
+static void the_worst_chart_is_bisected_before_its_cuts_were_probed(void **state)
+{
+    (void)state;
+    test_rng rng = test_rng_seed(0xb15e);
+    const sl_optimize_def def = sl_optimize_default();
+    test_surface s = test_surface_of(test_spiky_mesh(&rng, 17, 0, 0.0, TEST_TRIANGLES));
+    sl_opt_state opt = test_started(&s, &def);
+    sl_opt_weigh(&opt);
+    sl_opt_pool pool = {0};
+    int64_t taken = -1;
+    for (int32_t c = 0; c < opt.nchart; c++) {
+        opt.chart[c].sums.shear *= c == 0 ? 8.0 : 0.0; /* most of the loss in one chart */
+        assert_true(c > 0 || opt.chart[c].patch->nt > 1000);
+    }
+    const double loss = sl_opt_loss(&opt, &opt.chart[0].sums);
+    assert_int_equal(sl_opt_pool_refresh(&opt, &pool), SL_OK);
+    for (int64_t k = 0; k < pool.count; k++) {
+        assert_true(pool.trial[k].old[0] > 0 || (!pool.trial[k].probed && pool.trial[k].to == NULL));
+    }
+    assert_int_equal(sl_opt_bisect_worst(&opt, &pool, &taken), SL_OK);
+    assert_true(taken >= 0 && pool.trial[taken].probed && pool.trial[taken].settled);
+    assert_true(pool.trial[taken].old[0] == 0 && pool.trial[taken].nto > 1 && pool.trial[taken].loss < loss);
+    assert_int_equal(sl_opt_apply(&opt, &pool.trial[taken]), SL_OK);
+    test_check_state(&opt);
+    sl_opt_pool_clear(&pool);
+    sl_opt_state_clear(&opt);
+    test_surface_clear(&s);
 }
 
 /* Bounds end the same search earlier: what is sewn only becomes more. */
@@ -367,6 +426,8 @@ int main(void)
         cmocka_unit_test(tighter_targets_cost_longer_seams),
         cmocka_unit_test(the_bytes_do_not_depend_on_the_threads),
         cmocka_unit_test(a_target_out_of_reach_is_reported),
+        cmocka_unit_test(a_nearly_flat_mesh_ends_where_no_cut_is_worth_anything),
+        cmocka_unit_test(the_worst_chart_is_bisected_before_its_cuts_were_probed),
         cmocka_unit_test(a_bound_on_sewings_ends_the_same_search_earlier),
         cmocka_unit_test(a_first_cut_that_is_protected_stays),
         cmocka_unit_test(fine_angles_take_weights_that_coarse_ones_never_do),
