@@ -331,13 +331,11 @@ int cli_abf(int argc, char **argv)
     if (code >= 0) {
         return code;
     }
-    if (o.output != NULL && !sl_meshfile_can_hold_uv(o.output)) {
-        fprintf(stderr, "seamlab abf: the output's format cannot hold UVs; use .obj or .ply\n");
-        return CLI_USAGE;
+    if ((code = cli_check_output(verb.name, o.output, false)) >= 0) {
+        return code;
     }
     if (o.animation != NULL && strcmp(o.animation, "-") != 0 && !cli_has_extension(o.animation, ".png")) {
-        fprintf(stderr, "seamlab abf: --animate writes an animated .png, not %s\n", o.animation);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--animate writes an animated .png, not %s", o.animation);
     }
     o.def.max_iterations = o.iterations >= 0 ? o.iterations : o.def.max_iterations;
     o.def.energy = (sl_abf_energy)o.energy;

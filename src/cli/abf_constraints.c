@@ -21,8 +21,7 @@ typedef struct reader {
 
 static int refuse(const reader *r, const char *what)
 {
-    fprintf(stderr, "seamlab abf: --%s %s: %s\n", r->option, r->text, what);
-    return CLI_USAGE;
+    return cli_usage("abf", "--%s %s: %s", r->option, r->text, what);
 }
 
 /* Vertex v of the input, at facet f (-1 = any), in the chart; `near` >= 0: joined to that patch vertex by an edge.

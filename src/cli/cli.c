@@ -148,6 +148,15 @@ int cli_fail(cli_run *run, sl_status status, const sl_diag *diag)
     return exit_code(status);
 }
 
+int cli_check_output(const char *verb, const char *output, bool needed)
+{
+    if (output == NULL) {
+        return needed ? cli_usage(verb, "-o OUT is missing") : -1;
+    }
+    return sl_meshfile_can_hold_uv(output) ? -1
+                                           : cli_usage(verb, "the output's format cannot hold UVs; use .obj or .ply");
+}
+
 void cli_note(cli_run *run, const char *format, ...)
 {
     if (run->quiet) {

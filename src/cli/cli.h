@@ -43,6 +43,10 @@ int cli_end(cli_run *run, int code);
 /* Explains a failed status on stderr and gives its exit code; SL_OK gives 0. */
 int cli_fail(cli_run *run, sl_status status, const sl_diag *diag);
 
+/* -1, or the exit code where a mesh with UVs cannot be written to output, which is said on stderr: a format that cannot
+ * hold them, or no name (NULL) where one is needed. */
+int cli_check_output(const char *verb, const char *output, bool needed);
+
 /* A line on stderr unless --quiet. */
 void cli_note(cli_run *run, const char *format, ...) SL_PRINTF(2, 3);
 

@@ -195,9 +195,7 @@ static int check_names(cli_contender *contender, int32_t count)
         }
         for (int32_t k = 0; k < i; k++) {
             if (strcmp(contender[i].name, contender[k].name) == 0) {
-                fprintf(stderr, "seamlab compare: two atlases are called %s; name them: NAME=FILE\n",
-                        contender[i].name);
-                return CLI_USAGE;
+                return cli_usage(verb.name, "two atlases are called %s; name them: NAME=FILE", contender[i].name);
             }
         }
     }
@@ -231,8 +229,7 @@ int cli_compare(int argc, char **argv)
         return code;
     }
     if (camera != NULL && !cli_camera_parse(camera, &pictures.view)) {
-        fprintf(stderr, "seamlab compare: --camera is no view: '%s'\n", camera);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--camera is no view: '%s'", camera);
     }
     for (int32_t i = 0; i < count; i++) {
         name_contender(files[i], &contender[i]);

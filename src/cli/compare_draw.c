@@ -94,8 +94,7 @@ static int write_into(cli_run *run, const char *folder, const char *name, const 
     char path[4096], file[128];
     snprintf(file, sizeof file, "%s.png", name);
     if (!cli_join_path(folder, file, path, sizeof path)) {
-        fprintf(stderr, "seamlab compare: the folder's name is too long\n");
-        return CLI_USAGE;
+        return cli_usage("compare", "the folder's name is too long");
     }
     return write_picture(run, path, image);
 }

@@ -107,8 +107,7 @@ int cli_demo(int argc, char **argv)
     model = file_count > 0 ? files[0] : model;
     const sl_generator *generator = sl_generator_find(model);
     if (generator == NULL) {
-        fprintf(stderr, "seamlab demo: there is no model '%s'; --list names them\n", model);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "there is no model '%s'; --list names them", model);
     }
     code = cli_begin(&run);
     return code >= 0 ? code : cli_end(&run, run_demo(&run, generator, folder));

@@ -39,12 +39,7 @@ int cli_edit(int argc, char **argv)
     if (code >= 0) {
         return code;
     }
-    if (output == NULL || !sl_meshfile_can_hold_uv(output)) {
-        fprintf(stderr, "seamlab edit: %s\n  try: seamlab edit --help\n",
-                output == NULL ? "-o OUT is missing" : "the output's format cannot hold UVs; use .obj or .ply");
-        return CLI_USAGE;
-    }
-    if ((code = cli_begin(&run)) >= 0) {
+    if ((code = cli_check_output(verb.name, output, true)) >= 0 || (code = cli_begin(&run)) >= 0) {
         return code;
     }
     sl_meshfile *file = NULL;

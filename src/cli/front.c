@@ -233,14 +233,11 @@ int cli_front(int argc, char **argv)
         return code;
     }
     if (!parse_targets(targets, target, &count)) {
-        fprintf(stderr,
-                "seamlab front: --targets needs numbers of at least 1, each smaller than the one before, such as "
-                "1.1,1.02\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--targets needs numbers of at least 1, each smaller than the one before, such as "
+                                    "1.1,1.02");
     }
     if (plot != NULL && !cli_has_extension(plot, ".svg")) {
-        fprintf(stderr, "seamlab front: the plot is an SVG; name it so\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "the plot is an SVG; name it so");
     }
     if ((code = cli_begin(&run)) >= 0) {
         return code;

@@ -1,17 +1,28 @@
 #include "cli/options.h"
 
 #include "base/text.h"
+#include "cli/cli.h"
 #include "cli/options_help.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
+int cli_usage(const char *verb, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fprintf(stderr, "seamlab %s: ", verb);
+    vfprintf(stderr, format, args);
+    fprintf(stderr, "\n  try: seamlab %s --help\n", verb);
+    va_end(args);
+    return CLI_USAGE;
+}
+
 static int usage_error(const cli_verb *verb, const char *what, const char *value)
 {
-    fprintf(stderr, "seamlab %s: %s%s%s\n  try: seamlab %s --help\n", verb->name, what, value != NULL ? " " : "",
-            value != NULL ? value : "", verb->name);
-    return 2;
+    return cli_usage(verb->name, "%s%s%s", what, value != NULL ? " " : "", value != NULL ? value : "");
 }
 
 /* Position of text among "a|b|c", -1 = not there. */

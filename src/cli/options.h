@@ -46,8 +46,12 @@ typedef struct cli_verb {
 
 enum { CLI_MAX_FILES = 64 };
 
+/* Says on stderr what is wrong with a verb's options and where its help is. Returns the exit code, CLI_USAGE. */
+int cli_usage(const char *verb, const char *format, ...) SL_PRINTF(2, 3);
+
 /* Fills the targets from argv[first ..]. files: room for verb->max_files borrowed names. Returns -1 to go on, otherwise
- * the exit code to leave with (0 after --help and --help=man|bash|zsh|words, 2 after a usage error, which is explained on stderr). */
+ * the exit code to leave with (0 after --help and --help=man|bash|zsh|words, 2 after a usage error, which is explained
+ * on stderr). */
 int cli_parse(const cli_verb *verb, const cli_option *options, int32_t count, int argc, char **argv, int first,
               const char **files, int32_t *file_count);
 

@@ -51,20 +51,6 @@ static void option_table(pack_options *o, cli_option *table)
     cli_common_options(&o->run, table + OWN_OPTIONS + CLI_PACK_OPTIONS);
 }
 
-static int usage(const char *what)
-{
-    fprintf(stderr, "seamlab pack: %s\n  try: seamlab pack --help\n", what);
-    return CLI_USAGE;
-}
-
-static int check_options(const pack_options *o)
-{
-    if (o->output == NULL) {
-        return usage("-o OUT is missing");
-    }
-    return sl_meshfile_can_hold_uv(o->output) ? -1 : usage("the output's format cannot hold UVs; use .obj or .ply");
-}
-
 static json_t *options_json(const pack_options *o)
 {
     static const char *const turns[] = {"free", "right", "none"}, *const axes[] = {"as-is", "x", "y", "z"};
@@ -208,7 +194,7 @@ int cli_pack(int argc, char **argv)
     o.pack.def.effort = DEFAULT_EFFORT;
     option_table(&o, options);
     int code = cli_parse(&verb, options, ALL_OPTIONS, argc, argv, 2, files, &file_count);
-    if (code >= 0 || (code = check_options(&o)) >= 0 || (code = cli_begin(&o.run)) >= 0) {
+    if (code >= 0 || (code = cli_check_output(verb.name, o.output, true)) >= 0 || (code = cli_begin(&o.run)) >= 0) {
         return code;
     }
     cli_pack_apply(&o.pack);

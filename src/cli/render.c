@@ -148,15 +148,13 @@ static bool is_jpeg(const char *path)
 
 static int usage(const char *what, const char *text)
 {
-    fprintf(stderr, "seamlab render: %s: '%s'\n", what, text);
-    return CLI_USAGE;
+    return cli_usage(verb.name, "%s: '%s'", what, text);
 }
 
 static int check_options(render_options *o)
 {
     if (o->output == NULL) {
-        fprintf(stderr, "seamlab render: where to? give -o OUT.png or -o OUT.jpg\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "where to? give -o OUT.png or -o OUT.jpg");
     }
     if (strcmp(o->output, "-") != 0 && !is_jpeg(o->output) && !cli_has_extension(o->output, ".png")) {
         return usage("-o writes .png and .jpg, not", o->output);
@@ -172,8 +170,7 @@ static int check_options(render_options *o)
         return CLI_USAGE;
     }
     if (o->scene.show.constraints && o->scene.constraints == NULL) {
-        fprintf(stderr, "seamlab render: --show constraints needs --constraints FILE\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--show constraints needs --constraints FILE");
     }
     o->scene.show.constraints = o->scene.constraints != NULL;
     return -1;

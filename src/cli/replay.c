@@ -36,11 +36,7 @@ int cli_replay(int argc, char **argv)
     if (code >= 0) {
         return code;
     }
-    if (output != NULL && !sl_meshfile_can_hold_uv(output)) {
-        fprintf(stderr, "seamlab replay: the output's format cannot hold UVs; use .obj or .ply\n");
-        return CLI_USAGE;
-    }
-    if ((code = cli_begin(&run)) >= 0) {
+    if ((code = cli_check_output(verb.name, output, false)) >= 0 || (code = cli_begin(&run)) >= 0) {
         return code;
     }
     sl_meshfile *file = NULL;

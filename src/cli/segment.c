@@ -195,12 +195,10 @@ int cli_segment(int argc, char **argv)
         return code;
     }
     if (out.ply != NULL && !cli_has_extension(out.ply, ".ply")) {
-        fprintf(stderr, "seamlab segment: -o writes a coloured .ply, not %s; `unwrap` writes .obj\n", out.ply);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "-o writes a coloured .ply, not %s; `unwrap` writes .obj", out.ply);
     }
     if (out.animation != NULL && strcmp(out.animation, "-") != 0 && !cli_has_extension(out.animation, ".png")) {
-        fprintf(stderr, "seamlab segment: --animate writes an animated .png, not %s\n", out.animation);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--animate writes an animated .png, not %s", out.animation);
     }
     code = cli_begin(&run);
     if (code >= 0) {

@@ -270,14 +270,12 @@ int cli_spectrum(int argc, char **argv)
         return code;
     }
     if (o.signs && o.def.bands) {
-        fprintf(stderr, "seamlab spectrum: --signs and --bands exclude one another\n  try: seamlab spectrum --help\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--signs and --bands exclude one another");
     }
     o.def.mode = o.signs ? SL_LANCZOS_SIGNS : SL_LANCZOS_TOLERANCE;
     const bool csv = o.output != NULL && cli_has_extension(o.output, ".csv");
     if (o.output != NULL && !csv && !cli_has_extension(o.output, ".ply")) {
-        fprintf(stderr, "seamlab spectrum: -o writes .ply or .csv, not %s\n", o.output);
-        return CLI_USAGE;
+        return cli_usage(verb.name, "-o writes .ply or .csv, not %s", o.output);
     }
     code = cli_begin(&o.run);
     if (code >= 0) {

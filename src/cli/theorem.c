@@ -270,12 +270,10 @@ int cli_theorem(int argc, char **argv)
         return code;
     }
     if (o.mesh && o.file_count == 0) {
-        fprintf(stderr, "seamlab theorem: --mesh needs a file\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--mesh needs a file");
     }
     if (o.tap && o.run.json) {
-        fprintf(stderr, "seamlab theorem: --tap and --json exclude one another\n");
-        return CLI_USAGE;
+        return cli_usage(verb.name, "--tap and --json exclude one another");
     }
     code = cli_begin(&o.run);
     if (code >= 0) {

@@ -58,24 +58,12 @@ static void option_table(unwrap_options *o, cli_option *table)
     cli_common_options(&o->run, table + OWN_OPTIONS + CLI_PACK_OPTIONS + CLI_SEGMENT_OPTIONS);
 }
 
-static int usage(const char *what)
-{
-    fprintf(stderr, "seamlab unwrap: %s\n  try: seamlab unwrap --help\n", what);
-    return CLI_USAGE;
-}
-
 static int check_options(const unwrap_options *o)
 {
-    if (o->output == NULL) {
-        return usage("-o OUT is missing");
-    }
-    if (!sl_meshfile_can_hold_uv(o->output)) {
-        return usage("the output's format cannot hold UVs; use .obj or .ply");
-    }
     if ((o->seams != NULL) + (o->labels != NULL) + o->keep_seams > 1) {
-        return usage("--seams, --labels and --keep-seams exclude one another");
+        return cli_usage(verb.name, "--seams, --labels and --keep-seams exclude one another");
     }
-    return -1;
+    return cli_check_output(verb.name, o->output, true);
 }
 
 /* Reads the user's seams, if any. *owned is freed by the caller. */

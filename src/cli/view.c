@@ -90,11 +90,7 @@ int cli_view(int argc, char **argv)
     if (code >= 0) {
         return code;
     }
-    if (def.output != NULL && !sl_meshfile_can_hold_uv(def.output)) {
-        fprintf(stderr, "seamlab view: the output's format cannot hold UVs; use .obj or .ply\n");
-        return CLI_USAGE;
-    }
-    if ((code = cli_begin(&run)) >= 0) {
+    if ((code = cli_check_output(verb.name, def.output, false)) >= 0 || (code = cli_begin(&run)) >= 0) {
         return code;
     }
     sl_meshfile *file = NULL;

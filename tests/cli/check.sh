@@ -59,8 +59,13 @@ for verb in unwrap edit replay check measure pack compare overlap segment spectr
     contains err.txt 'unknown option'
 done
 expect 2 "$seamlab" unwrap
-expect 2 "$seamlab" unwrap a.obj -o b.off
-contains err.txt 'cannot hold UVs'
+for verb in unwrap pack "edit log" "replay log" view abf; do
+    expect 2 "$seamlab" ${verb% *} a.obj ${verb#"${verb% *}"} -o b.off
+    contains err.txt 'cannot hold UVs'
+    contains err.txt "try: seamlab ${verb% *} --help"
+done
+expect 2 "$seamlab" pack a.obj
+contains err.txt 'OUT is missing'
 expect 2 "$seamlab" unwrap a.obj -o b.obj --rule sideways
 contains err.txt 'longest|length-lambda|lookahead'
 expect 2 "$seamlab" unwrap a.obj -o b.obj --max-stretch 0.5
