@@ -44,7 +44,7 @@ cleanup:
     return status;
 }
 
-/* Start, cuts halfway and to their end, sewings halfway, and all. A bound ends the same search earlier. */
+/* Start, cuts to their end, a quarter of the sewings, half of them, and all. A bound ends the same search earlier. */
 static sl_status show_search(exp_run *run, exp_page *page, exp_claims *claims, const char *name)
 {
     sl_status status = SL_OK;

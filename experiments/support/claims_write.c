@@ -1,4 +1,5 @@
 #include "support/claims.h"
+#include "support/csv.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -80,11 +81,9 @@ sl_status exp_claims_write(const exp_claims *claims, exp_run *run, const char *f
     const char *colon = strchr(heading, ':');
     const size_t length = colon != NULL ? (size_t)(colon - heading) : strlen(heading);
     snprintf(name, sizeof name, "%.*s", (int)length, heading);
-    SL_TRY(exp_path(run, "claims.csv", path));
-    SL_TRY(sl_writer_create(path, &csv, &run->diag));
+    SL_TRY(exp_csv_open(run, "claims.csv", "mesh,quantity,relation,bound,measured,where,meshes,holds,paper", &csv));
     SL_TRY(exp_path(run, "overview.html", path));
     SL_TRY(sl_writer_create(path, &overview.writer, &run->diag));
-    sl_writer_text(csv, "mesh,quantity,relation,bound,measured,where,meshes,holds,paper\n");
     for (int32_t k = 0; k < claims->count; k++) {
         const exp_claim *c = &claims->claim[k];
         if (!applies(c, run)) {
@@ -96,12 +95,9 @@ sl_status exp_claims_write(const exp_claims *claims, exp_run *run, const char *f
         }
     }
     overview_rest(&overview, claims, run, folder, name);
-    status = sl_writer_commit(csv, &run->diag);
-    csv = NULL;
-    if (status == SL_OK) {
-        status = sl_writer_commit(overview.writer, &run->diag);
-        overview.writer = NULL;
-    }
+    SL_TRY(exp_csv_close(run, &csv));
+    status = sl_writer_commit(overview.writer, &run->diag);
+    overview.writer = NULL;
 cleanup:
     sl_writer_abandon(csv);
     sl_writer_abandon(overview.writer);
