@@ -31,19 +31,20 @@ static double cut_price(const sl_optimize_def *def)
     return fmax(CUT_PRICE * sl_opt_coarseness(def), LEAST_CUT_PRICE);
 }
 
-/* What a cut costs: its seams, its charts, and itself. */
+/* What a cut adds to the price of the atlas: its seams and its charts. */
 static double price_of(const sl_opt_state *state, const sl_opt_trial *trial)
 {
-    return cut_price(state->def) + state->def->seam_cost * trial->cost + state->def->chart_cost * (trial->nto - 1);
+    return state->def->seam_cost * trial->cost + state->def->chart_cost * (trial->nto - 1);
 }
 
 static double score(const sl_opt_state *state, const sl_opt_trial *trial, double wanted)
 {
     const double gain = sl_opt_loss(state, &state->chart[trial->old[0]].sums) - trial->loss;
-    if (!trial->valid || !(gain > LEAST_GAIN)) {
+    const double price = price_of(state, trial);
+    if (!trial->valid || !(gain > LEAST_GAIN) || price > state->room) {
         return 0.0;
     }
-    return fmin(gain, wanted) / price_of(state, trial);
+    return fmin(gain, wanted) / (cut_price(state->def) + price);
 }
 
 /* Are the atlas's targets met, and only some charts beyond what one may be? */
@@ -178,7 +179,7 @@ sl_status sl_opt_bisect_worst(sl_opt_state *state, sl_opt_pool *p, int64_t *take
     double least = WORSE * loss;
     for (int64_t k = 0; k < p->count; k++) {
         sl_opt_trial *trial = &p->trial[k];
-        if (trial->old[0] != worst || trial->nto < 2 || !trial->valid) {
+        if (trial->old[0] != worst || trial->nto < 2 || !trial->valid || price_of(state, trial) > state->room) {
             continue;
         }
         if (!trial->probed) { /* only guessed at: its charts are not made yet */

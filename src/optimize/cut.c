@@ -31,6 +31,10 @@ sl_status sl_opt_cut(sl_opt_state *state)
         if (sl_opt_within(state, &total)) {
             break;
         }
+        state->room = state->most_price < HUGE_VAL ? state->most_price - sl_opt_price(state) : HUGE_VAL;
+        if (!(state->room > 0.0)) {
+            break;
+        }
         sl_opt_weigh(state);
         double since = sl_opt_clock();
         SL_TRY(sl_opt_pool_refresh(state, &p));

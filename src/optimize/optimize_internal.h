@@ -75,8 +75,10 @@ typedef struct sl_opt_state {
     sl_opt_chart *chart;
     int64_t nchart, capacity;
     int32_t next_stamp;
-    double w;       /* of the energy */
-    double cost[2]; /* what q / A and shear / A weigh: see sl_opt_weigh */
+    double most_price; /* cuts that make seams and charts cost more are none; HUGE_VAL unless seams are made again */
+    double room;       /* what a cut may cost then, as things stand */
+    double w;          /* of the energy */
+    double cost[2];    /* what q / A and shear / A weigh: see sl_opt_weigh */
     sl_optimize_info info;
 } sl_opt_state;
 
@@ -235,6 +237,11 @@ SL_NODISCARD sl_status sl_opt_straighten(sl_opt_state *state);
 
 /* Cuts and sews in turn while that lowers the price. */
 SL_NODISCARD sl_status sl_opt_search(sl_opt_state *state);
+
+/* Sews one part of a seam after another though the targets are then missed, cuts, sews and straightens, and keeps what
+ * costs less: a number of times that depends on the piece's size and on how fine the targets are. Does nothing where
+ * the targets are not met. */
+SL_NODISCARD sl_status sl_opt_recreate(sl_opt_state *state);
 
 /* Starts and searches: on the piece itself, or for a large one on coarse meshes of it first. *done = false where no
  * valid charts were found. */

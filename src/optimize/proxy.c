@@ -270,6 +270,7 @@ sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment, const
         SL_TRY(sl_opt_start(state, segment, triangulation, done));
         if (*done) {
             SL_TRY(sl_opt_search(state));
+            SL_TRY(sl_opt_recreate(state));
         }
     }
     if (*done && nt <= SEARCH_FINE_FROM) {

@@ -14,7 +14,12 @@ sl_status sl_opt_state_init(const sl_opt_surface *surface, const sl_optimize_def
                             sl_opt_state *out)
 {
     const int64_t nt = surface->patch->nt;
-    *out = (sl_opt_state){.surface = surface, .def = def, .context = context, .quiet = sl_quiet_context(context)};
+    *out = (sl_opt_state){.surface = surface,
+                          .def = def,
+                          .context = context,
+                          .quiet = sl_quiet_context(context),
+                          .most_price = HUGE_VAL,
+                          .room = HUGE_VAL};
     out->cut = sl_calloc(3 * nt, sizeof *out->cut);
     out->keep = sl_calloc(3 * nt, sizeof *out->keep);
     out->uv = sl_calloc(6 * nt, sizeof *out->uv);
