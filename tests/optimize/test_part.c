@@ -221,6 +221,7 @@ static sl_opt_trial first_halves(const sl_opt_state *state)
     sl_opt_trial_clear(&halves[1]);
     assert_int_equal(sl_opt_trial_make(state, &halves[0]), SL_OK);
     assert_int_equal(sl_opt_trial_probe(state, 4, &halves[0]), SL_OK);
+    halves[0].probed = true;
     return halves[0];
 }
 
