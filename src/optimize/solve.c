@@ -16,8 +16,9 @@ static const double W_HIGH = 1.0;
 static const double W_LOW = -5.0; /* at coarse targets lower ones hardly gain angle, and what cuts promise is noise */
 static const double FINE_ANGLE = 1.1, MOST_LOWER = 40.0; /* below that target they do gain: so many times W_LOW */
 static const int BALANCE_ROUNDS = 6;
-static const int32_t MOST_KEPT = 50000;  /* triangles of a chart whose factor is kept between rounds: tens of megabytes */
-static const double BALANCED = 0.02;     /* the two shares of the budgets agree within this ratio */
+static const int32_t MOST_KEPT =
+    50000;                           /* triangles of a chart whose factor is kept between rounds: tens of megabytes */
+static const double BALANCED = 0.02; /* the two shares of the budgets agree within this ratio */
 static const double BALANCED_FAR = 0.15; /* ... while their mean is above FAR_SHARE */
 static const double FAR_SHARE = 1.3;
 static const double FIRST_STEP = 0.25; /* of the weight; in proportion to it below W_LOW */
