@@ -98,6 +98,7 @@ static sl_status reach(exp_run *run, const exp_source *source, const peer *their
     sl_atlas *atlas = NULL;
     atlas_row row;
     sl_atlas_def def = variant_def(NONE, NULL);
+    def.optimize.empty_cost = 0.0; /* charts and seams alone are compared */
     def.optimize.target_stretch = theirs->l2;
     def.optimize.target_angle = largest_angle;
     SL_TRY(exp_mesh_load(source, &mesh, &run->diag));

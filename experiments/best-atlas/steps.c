@@ -22,6 +22,7 @@ static sl_status show_step(exp_run *run, exp_page *page, const exp_mesh *mesh, c
     const sl_view view = exp_view_of(name);
     const sl_picture picture = exp_picture(run, WIDTH, HEIGHT);
     char file[96], alt[160], caption[320];
+    def.optimize.empty_cost = 0.0; /* its cuts come last, and are none of these steps */
     def.optimize.max_cuts = s->cuts;
     def.optimize.max_sewings = s->sewings;
     SL_TRY(make_atlas(run, name, mesh, &def, &atlas, row));

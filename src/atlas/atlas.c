@@ -111,15 +111,6 @@ static sl_status warn_of_search(sl_atlas *atlas, const sl_atlas_def *def)
                  "the search found no valid charts for %d of %d piece%s, cut by recursion instead", info.failed,
                  info.pieces, sl_plural(info.pieces));
     }
-    if (info.direct > 0) {
-        sl_warning *w = push_warning(atlas, -1);
-        if (w == NULL) {
-            return SL_OUT_OF_MEMORY;
-        }
-        snprintf(w->text, sizeof w->text,
-                 "the seams of no coarse mesh could be carried over to %d of %d piece%s, searched without one",
-                 info.direct, info.pieces, sl_plural(info.pieces));
-    }
     if (info.missed > 0) {
         sl_warning *w = push_warning(atlas, -1);
         if (w == NULL) {

@@ -164,6 +164,8 @@ static json_t *options_json(const sl_atlas_def *def)
         json_object_set_new(j, "target_stretch", number(def->optimize.target_stretch));
         json_object_set_new(j, "target_angle", number(def->optimize.target_angle));
         json_object_set_new(j, "chart_cost", number(def->optimize.chart_cost));
+        json_object_set_new(j, "empty_cost", number(def->optimize.empty_cost));
+        json_object_set_new(j, "search_effort", number(def->optimize.effort));
         json_object_set_new(j, "seam_cost", number(def->optimize.seam_cost));
         json_object_set_new(j, "protect", json_string(protect[def->optimize.protect]));
         json_object_set_new(j, "weights", weights_json(&def->optimize.weights));

@@ -15,6 +15,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+enum { KEPT_BYTES = 64 << 20 };
+#endif
+
 /* The one mutable global of the program: a signal handler can reach nothing else. */
 static atomic_bool interrupted;
 
@@ -74,6 +79,10 @@ int cli_begin(cli_run *run)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+#ifdef __GLIBC__ /* solves come and go by the thousand: their memory is not given back in between */
+    mallopt(M_TRIM_THRESHOLD, KEPT_BYTES);
+    mallopt(M_MMAP_THRESHOLD, KEPT_BYTES / 2);
+#endif
     openblas_set_num_threads(1); /* our own workers do the sharing: same bytes for any number of them */
     run->bar = !run->quiet && isatty(STDERR_FILENO) && term != NULL && strcmp(term, "dumb") != 0 &&
                (no_color == NULL || no_color[0] == '\0');

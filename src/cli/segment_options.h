@@ -16,7 +16,7 @@ typedef struct cli_segment_options {
     int32_t method, rule, pairing, energy, preset, symmetry, protect; /* positions in their choices */
 } cli_segment_options;
 
-#define CLI_SEGMENT_OPTIONS 36
+#define CLI_SEGMENT_OPTIONS 38
 
 /* Looks for --preset in argv and sets its values, so that every other option overrides it wherever it stands; usual =
  * the verb's own where there is none. */

@@ -118,6 +118,7 @@ sl_status sl_opt_search_creases(sl_opt_state *state, const sl_segment_def *segme
             other = swap;
         }
         sl_opt_add_info(&other.info, &state->info);
+        state->machined = true;
     }
 cleanup:
     sl_opt_state_clear(&other);

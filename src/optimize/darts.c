@@ -49,11 +49,6 @@ static void field_clear(dart_field *d)
 static sl_status field_allocate(dart_field *d)
 {
     const int64_t nv = d->patch->nv, nt = d->patch->nt;
-    d->graph.n = (int32_t)nv;
-    d->graph.first = sl_calloc(nv + 1, sizeof *d->graph.first);
-    d->graph.adj = sl_alloc(3 * nt, sizeof *d->graph.adj);
-    d->graph.weight = sl_alloc(3 * nt, sizeof *d->graph.weight);
-    d->halfedge = sl_alloc(3 * nt, sizeof *d->halfedge);
     d->distance = sl_alloc(nv, sizeof *d->distance);
     d->parent = sl_alloc(nv, sizeof *d->parent);
     d->entry = sl_alloc(nv, sizeof *d->entry);
@@ -64,26 +59,32 @@ static sl_status field_allocate(dart_field *d)
     d->area = sl_alloc(nv, sizeof *d->area);
     d->field = sl_alloc(nv, sizeof *d->field);
     d->work = sl_alloc(nv, sizeof *d->work);
-    const bool ok = d->graph.first != NULL && d->graph.adj != NULL && d->graph.weight != NULL && d->halfedge != NULL &&
-                    d->distance != NULL && d->parent != NULL && d->entry != NULL && d->source != NULL &&
+    const bool ok = d->distance != NULL && d->parent != NULL && d->entry != NULL && d->source != NULL &&
                     d->along != NULL && d->share != NULL && d->mass != NULL && d->area != NULL && d->field != NULL &&
                     d->work != NULL;
     return ok ? SL_OK : SL_OUT_OF_MEMORY;
 }
 
 /* May halfedge c of the patch be cut? */
-static bool may_cut(const dart_field *d, int32_t c)
+static bool may_cut(const sl_opt_surface *surface, const sl_patch *p, int32_t c)
 {
-    return d->patch->twin[c] >= 0 && d->state->surface->cost[d->patch->corner[c]] < HUGE_VAL;
+    return p->twin[c] >= 0 && surface->cost[p->corner[c]] < HUGE_VAL;
 }
 
 /* Rows in the order of the corners, so that nothing need be sorted. */
-static void build_graph(dart_field *d)
+sl_status sl_opt_chart_graph(const sl_opt_surface *surface, const sl_patch *p, sl_graph *graph, int32_t **halfedge)
 {
-    const sl_patch *p = d->patch;
-    int32_t *first = d->graph.first;
+    const int64_t nv = p->nv, nt = p->nt;
+    int32_t *first = sl_calloc(nv + 1, sizeof *first);
+    *graph = (sl_graph){.n = p->nv, .first = first};
+    graph->adj = sl_alloc(3 * nt, sizeof *graph->adj);
+    graph->weight = sl_alloc(3 * nt, sizeof *graph->weight);
+    *halfedge = sl_alloc(3 * nt, sizeof **halfedge);
+    if (first == NULL || graph->adj == NULL || graph->weight == NULL || *halfedge == NULL) {
+        return SL_OUT_OF_MEMORY;
+    }
     for (int32_t c = 0; c < 3 * p->nt; c++) {
-        first[p->tri[c]] += may_cut(d, c);
+        first[p->tri[c]] += may_cut(surface, p, c);
     }
     int32_t sum = 0;
     for (int32_t v = 0; v < p->nv; v++) {
@@ -92,13 +93,14 @@ static void build_graph(dart_field *d)
     }
     first[p->nv] = sum;
     for (int32_t c = 3 * p->nt; c-- > 0;) {
-        if (may_cut(d, c)) {
+        if (may_cut(surface, p, c)) {
             const int32_t at = --first[p->tri[c]];
-            d->graph.adj[at] = p->tri[sl_corner_next(c)];
-            d->graph.weight[at] = d->state->surface->cost[p->corner[c]];
-            d->halfedge[at] = c;
+            graph->adj[at] = p->tri[sl_corner_next(c)];
+            graph->weight[at] = surface->cost[p->corner[c]];
+            (*halfedge)[at] = c;
         }
     }
+    return SL_OK;
 }
 
 /* Walks the border; a disk has one loop. */
@@ -242,7 +244,7 @@ static sl_status field_init(const sl_opt_state *state, int32_t c, dart_field *d)
     sl_opt_sums sums;
     *d = (dart_field){.state = state, .patch = state->chart[c].patch};
     SL_TRY(field_allocate(d));
-    build_graph(d);
+    SL_TRY(sl_opt_chart_graph(state->surface, d->patch, &d->graph, &d->halfedge));
     list_border(d);
     sl_opt_measure(state->surface, d->patch, state->chart[c].uv, &sums, d->share);
     SL_TRY(sl_graph_shortest_paths(&d->graph, d->source, d->nsources, NULL, -1, d->distance, d->parent, d->entry));

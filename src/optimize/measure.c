@@ -61,3 +61,8 @@ void sl_opt_measure(const sl_opt_surface *surface, const sl_patch *patch, const 
         }
     }
 }
+
+double sl_opt_best_scale(const sl_opt_sums *sums)
+{
+    return sums->plane > 0.0 && sums->inverse > 0.0 ? pow(sums->inverse / sums->plane, 0.25) : 1.0;
+}

@@ -26,12 +26,15 @@ typedef struct sl_optimize_def {
     double max_angle;      /* mean s1/s2 of any one chart; default 1.75 */
     double chart_cost;     /* what a chart is worth in seam length over sqrt(area); default 0.3 */
     double seam_cost;      /* what seam length is worth in itself; 0 = only charts count; default 1 */
+    double empty_cost;     /* what as much empty texture as the surface's area is worth, likewise; default 1 */
     double start_stretch;  /* L2 above which the first cuts recurse; default 2.5 */
     sl_protect protect;
     sl_seam_cost_def weights; /* where seams run: factors on their length, of the whole mesh; `partner` is the
                                  pairing's; default sl_seam_cost_default(), sl_seam_cost_none() = length alone */
-    int32_t max_cuts;         /* bound on cuts of one piece; default 400 */
-    int32_t max_sewings;      /* ... on sewings; with max_cuts it ends the same search earlier; default 100000 */
+    double effort;       /* work on ruining and making seams again once the search has ended, in small pieces; 0 = none;
+                            default 1 */
+    int32_t max_cuts;    /* bound on cuts of one piece; default 400 */
+    int32_t max_sewings; /* ... on sewings; with max_cuts it ends the same search earlier; default 100000 */
 } sl_optimize_def;
 
 sl_optimize_def sl_optimize_default(void);
@@ -53,10 +56,10 @@ typedef enum sl_optimize_stage {
 typedef struct sl_optimize_info {
     int32_t pieces, failed; /* cut here; left to the recursion because no valid start was found */
     int32_t missed;         /* pieces whose targets were not met */
-    int32_t direct; /* large pieces searched as they are since the seams of no coarse mesh could be carried over */
-    int32_t cuts, sewings; /* accepted, on whatever mesh */
-    int32_t straightened;  /* parts of seams that were laid anew */
-    int32_t trials;        /* candidate cuts and sewings solved */
+    int32_t direct;         /* large pieces searched as they are: no coarse mesh's charts hold on them */
+    int32_t cuts, sewings;  /* accepted, on whatever mesh */
+    int32_t straightened;   /* parts of seams that were laid anew */
+    int32_t trials;         /* candidate cuts and sewings solved */
     /* Of the process's CPU time [s]: of one thread, nothing else in the process running. The only figures that differ
      * from run to run. */
     double seconds[SL_OPTIMIZE_STAGES];

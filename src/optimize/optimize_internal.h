@@ -3,6 +3,7 @@
 #ifndef SL_OPTIMIZE_INTERNAL_H
 #define SL_OPTIMIZE_INTERNAL_H
 
+#include "graph/csr.h"
 #include "mesh/patch.h"
 #include "optimize/optimize.h"
 #include "param/stretch.h"
@@ -41,6 +42,9 @@ typedef struct sl_opt_sums {
 /* q = sqrt(I a) - A. */
 double sl_opt_stretch(const sl_opt_sums *sums);
 
+/* The scale at which a chart adds least to the atlas's L2: I and a agree. */
+double sl_opt_best_scale(const sl_opt_sums *sums);
+
 /* A chart: patch->corner and patch->facet are halfedges and triangles of the surface. */
 typedef struct sl_opt_chart {
     sl_patch *patch;
@@ -77,6 +81,7 @@ typedef struct sl_opt_state {
     int32_t next_stamp;
     double most_price; /* cuts that make seams and charts cost more are none; HUGE_VAL unless seams are made again */
     double room;       /* what a cut may cost then, as things stand */
+    bool machined;     /* creases part the surface into few, nearly developable parts */
     double w;          /* of the energy */
     double cost[2];    /* what q / A and shear / A weigh: see sl_opt_weigh */
     sl_optimize_info info;
@@ -190,6 +195,11 @@ SL_NODISCARD sl_status sl_opt_balance(sl_opt_state *state);
 /* Candidate cuts of chart c: darts, chords, bisections. *list (owned) and *count. */
 SL_NODISCARD sl_status sl_opt_candidates(const sl_opt_state *state, int32_t c, sl_opt_trial **list, int32_t *count);
 
+/* A chart's vertices over the edges that may be cut, each weighed by its cost; halfedge (owned): of the patch, behind
+ * an entry. SL_OUT_OF_MEMORY: to be cleared all the same. */
+SL_NODISCARD sl_status sl_opt_chart_graph(const sl_opt_surface *surface, const sl_patch *patch, sl_graph *graph,
+                                          int32_t **halfedge);
+
 /* Two smoothed spectral bisections of chart c, appended. */
 SL_NODISCARD sl_status sl_opt_bisections(const sl_opt_state *state, int32_t c, sl_opt_trial *list, int32_t *count);
 
@@ -234,6 +244,10 @@ SL_NODISCARD sl_status sl_opt_sew(sl_opt_state *state);
 /* Lays parts of seams anew where a way that is cheaper and turns less leads between the same ends and the targets stay
  * met. */
 SL_NODISCARD sl_status sl_opt_straighten(sl_opt_state *state);
+
+/* Cuts charts across that leave much of a square page empty, while that costs less than def->empty_cost. They stay as
+ * they lie: a part of a map is no worse than the whole. */
+SL_NODISCARD sl_status sl_opt_compact(sl_opt_state *state);
 
 /* Cuts and sews in turn while that lowers the price. */
 SL_NODISCARD sl_status sl_opt_search(sl_opt_state *state);

@@ -15,6 +15,7 @@ static const int CARRIES = 3;             /* of the searched mesh's seams */
 static const int FINISHES = 2;            /* of the tried mesh's */
 static const double ENOUGH = 0.9;         /* share of the budget that is well spent */
 static const double NEAR_MISS = 1.5;      /* share of a budget that a few cuts on the finer mesh still mend */
+static const double BELIEVED = 0.85;      /* ... spent where the coarse mesh shows all that matters */
 static const double SAME = 0.005;         /* no more comes of searching on */
 static const double MOST_RATIO = 2.0; /* between the losses of one mesh and the next finer, as far as it is believed */
 
@@ -168,9 +169,9 @@ static bool is_enough(double share, double last)
 }
 
 /* Searches the coarse mesh, carries the seams over, and corrects its targets until the finer one's are met and not
- * much is left of them. Where only little is missed, that is cut on the finer one at once. *done = false: the seams
- * could not be carried over. */
-static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
+ * much is left of them. Where only little is missed, that is cut on the finer one at once. Unless `patient`, charts
+ * that come out quite differently there end it. *done = false: that, or the seams could not be carried over. */
+static sl_status search_level(level *l, bool patient, sl_opt_state *finer, bool *done)
 {
     sl_status status = SL_OK;
     nearest best = {.share = HUGE_VAL};
@@ -183,11 +184,16 @@ static sl_status search_level(level *l, sl_opt_state *finer, bool *done)
             break;
         }
         SL_TRY(remember(l, share, &best));
+        if (share > 1.0 && !patient) {
+            break;
+        }
         correct_targets(finer, l);
     }
-    if (*done && share > 1.0) {
+    if (*done && share > 1.0 && (patient || share < NEAR_MISS || best.share <= 1.0)) {
         SL_TRY(make_good(l, &best, finer, &share, done));
+        share = share_of(finer);
     }
+    *done = *done && (patient || (share >= BELIEVED && share <= 1.0));
     sl_opt_add_info(&l->state.info, &finer->info);
 cleanup:
     sl_opt_state_clear(&best.state);
@@ -228,7 +234,8 @@ static sl_status through_levels(sl_opt_state *state, const sl_segment_def *segme
     sl_status status = SL_OK;
     level tried = {0}, searched = {0};
     sl_segment_def with = *segment;
-    const bool two = state->surface->patch->nt > TRY_FROM;
+    const int32_t nt = state->surface->patch->nt;
+    const bool two = nt > TRY_FROM;
     if (two) {
         SL_TRY(level_init(state, TRIED, &tried));
     }
@@ -237,7 +244,7 @@ static sl_status through_levels(sl_opt_state *state, const sl_segment_def *segme
     with.edge_weight = searched.weight;
     SL_TRY(sl_opt_start(&searched.state, &with, searched.triangulation, done));
     if (*done) {
-        SL_TRY(search_level(&searched, finer, done));
+        SL_TRY(search_level(&searched, nt > SEARCH_FINE_FROM, finer, done));
     }
     if (*done && two) {
         SL_TRY(finish(&tried, state, done));
@@ -267,6 +274,8 @@ sl_status sl_opt_piece(sl_opt_state *state, const sl_segment_def *segment, const
         state->info.direct += !*done;
     }
     if (!*done) {
+        sl_opt_uncut(state);
+        state->w = 0.0;
         SL_TRY(sl_opt_start(state, segment, triangulation, done));
         if (*done) {
             SL_TRY(sl_opt_search(state));

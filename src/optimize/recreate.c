@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* Attempts = triangles of work over those of the piece. */
-static const double COARSE_WORK = 12000.0, FINE_WORK = 240000.0;
+static const double COARSE_WORK = 4000.0, FINE_WORK = 240000.0;
 enum { MOST_RUINS = 48, MOST_LOOKS = 192 }; /* attempts; windows looked at */
 static const double LEAST_SAVING = 0.1;     /* of a ruin */
 static const double GAP = 0.05;             /* over the surface's unit, between banks that are still no hindrance */
@@ -186,7 +186,7 @@ cleanup:
 static int32_t attempts(const sl_opt_state *state)
 {
     const double work = sl_opt_coarseness(state->def) < 1.0 ? FINE_WORK : COARSE_WORK;
-    return (int32_t)fmin(work / state->surface->patch->nt, MOST_RUINS);
+    return (int32_t)fmin(state->def->effort * work / state->surface->patch->nt, MOST_RUINS);
 }
 
 /* Is there something to win, and leave to do it? */

@@ -7,7 +7,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-static const int ROUNDS = 3; /* of cutting and sewing */
+static const int ROUNDS = 3;          /* of cutting and sewing */
+static const double MAIN_SHARE = 0.4; /* of a mesh's area: smaller pieces lie in the gaps of others as they are */
 
 sl_optimize_def sl_optimize_default(void)
 {
@@ -17,9 +18,11 @@ sl_optimize_def sl_optimize_default(void)
                              .max_angle = 1.75,
                              .chart_cost = 0.3,
                              .seam_cost = 1.0,
+                             .empty_cost = 1.0,
                              .start_stretch = 2.5,
                              .protect = SL_PROTECT_AXIS,
                              .weights = sl_seam_cost_default(),
+                             .effort = 1.0,
                              .max_cuts = 400,
                              .max_sewings = 100000};
 }
@@ -27,15 +30,10 @@ sl_optimize_def sl_optimize_default(void)
 /* What the pieces report to, side by side: sums of whole numbers do not depend on the order. */
 typedef struct optimizer {
     const sl_optimize_def *def;
+    double area; /* of the mesh, as it was read */
     atomic_int pieces, missed, direct, cuts, sewings, straightened, trials;
     atomic_llong microseconds[SL_OPTIMIZE_STAGES];
 } optimizer;
-
-/* The scale at which a chart adds least to the atlas's L2: I and a agree. */
-static double best_scale(const sl_opt_sums *sums)
-{
-    return sums->plane > 0.0 && sums->inverse > 0.0 ? pow(sums->inverse / sums->plane, 0.25) : 1.0;
-}
 
 static void write_back(const sl_opt_state *state, sl_mesh *mesh, double *corner_uv)
 {
@@ -45,7 +43,7 @@ static void write_back(const sl_opt_state *state, sl_mesh *mesh, double *corner_
             sl_mesh_cut_edge(mesh, p->corner[c]);
         }
         const sl_opt_chart *chart = &state->chart[state->chart_of[c / 3]];
-        const double scale = best_scale(&chart->sums);
+        const double scale = sl_opt_best_scale(&chart->sums);
         for (int k = 0; k < 2; k++) {
             corner_uv[2 * (int64_t)p->corner[c] + k] = scale * state->uv[2 * (int64_t)c + k];
         }
@@ -101,6 +99,9 @@ static sl_status cut_piece(void *user, sl_mesh *piece, const sl_triangulation *t
     }
     SL_TRY(sl_opt_state_init(&surface, o->def, context, &state));
     SL_TRY(sl_opt_piece(&state, def, triangulation, done));
+    if (*done && surface.total / (piece->scale * piece->scale) >= MAIN_SHARE * o->area) {
+        SL_TRY(sl_opt_compact(&state));
+    }
     if (*done) {
         sl_opt_total total;
         sl_opt_totals(&state, &total);
@@ -130,6 +131,9 @@ sl_status sl_optimize_segment(sl_mesh *mesh, const sl_triangulation *triangulati
     const sl_cutter cutter = {cut_piece, &o};
     sl_segment_def with = *segment;
     double *weight = NULL;
+    for (int32_t f = 0; f < mesh->nf; f++) {
+        o.area += sl_mesh_face_area(mesh, f) / (mesh->scale * mesh->scale);
+    }
     sl_status status = sl_opt_weights(mesh, &def->weights, segment->pairing, context, &weight);
     if (status != SL_OK) {
         *out = NULL;

@@ -31,24 +31,6 @@ static sl_stretch_def stretch_def(const sl_opt_state *state)
     return def;
 }
 
-static sl_status list_border(const sl_patch *patch, int32_t *nb, int32_t **border)
-{
-    int32_t *first = NULL, *halfedge = NULL;
-    sl_status status = sl_patch_border(patch, &first, &halfedge);
-    if (status != SL_OK) {
-        return status;
-    }
-    *nb = first[patch->loops];
-    *border = sl_alloc(2 * (int64_t)*nb, sizeof **border);
-    for (int32_t b = 0; b < *nb && *border != NULL; b++) {
-        (*border)[2 * b] = patch->tri[halfedge[b]];
-        (*border)[2 * b + 1] = patch->tri[sl_corner_next(halfedge[b])];
-    }
-    sl_free(first);
-    sl_free(halfedge);
-    return *border == NULL ? SL_OUT_OF_MEMORY : SL_OK;
-}
-
 /* What a solver says when it has no map to offer is an outcome here. */
 static sl_status outcome(sl_status status, bool *solved)
 {
@@ -152,7 +134,7 @@ static sl_status solve_cold(attempt *a, double *uv, bool *embedded)
 sl_status sl_opt_certify(const sl_patch *patch, const double *uv, sl_certificate *out)
 {
     int32_t nb = 0, *border = NULL;
-    sl_status status = list_border(patch, &nb, &border);
+    sl_status status = sl_patch_border_edges(patch, &nb, &border);
     if (status == SL_OK) {
         status = sl_certify_embedding(uv, patch->nt, patch->tri, nb, border, out);
     }
@@ -175,7 +157,7 @@ static sl_status solve_with(const sl_opt_state *state, const sl_patch *patch, sl
     a.start = sl_alloc(2 * (int64_t)patch->nv, sizeof *a.start);
     a.work = sl_alloc(patch->nv, sizeof *a.work);
     SL_TRY(a.start == NULL || a.work == NULL ? SL_OUT_OF_MEMORY : SL_OK);
-    SL_TRY(list_border(patch, &a.nb, &a.border));
+    SL_TRY(sl_patch_border_edges(patch, &a.nb, &a.border));
     memcpy(a.start, uv, 2 * (size_t)patch->nv * sizeof *uv);
     switch (effort) {
     case SL_OPT_WARM:

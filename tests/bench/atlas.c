@@ -18,7 +18,8 @@
 #include <time.h>
 
 enum { RESOLUTION = 2048, MOST_ROWS = 256, TARGETS = 6, MESHES = 8 };
-enum { DEFAULT = 5 }; /* of the targets */
+enum { PROTOTYPE_ROW = 4, DEFAULT = 5 };    /* of the targets */
+static const double PROTOTYPE_EFFORT = 3.0; /* it took minutes */
 static const char *const MESH[MESHES] = {"cow",         "spot",    "suzanne",    "homer",
                                          "cheburashka", "fandisk", "rocker-arm", "hand"};
 static const char *const TARGET[TARGETS] = {"uvatlas", "fine", "xatlas-l2", "xatlas-both", "prototype", "default"};
@@ -138,12 +139,13 @@ static sl_status run(const sl_polygons *polygons, const task *t, int mesh, int t
     sl_atlas_def def = sl_atlas_default();
     def.best = true;
     def.optimize = sl_optimize_default();
-    def.optimize.weights = sl_seam_cost_none();
     def.optimize.target_stretch = t->target_stretch;
     def.optimize.target_angle = t->target_angle;
     if (target != DEFAULT) {
         def.optimize.protect = SL_PROTECT_NONE;
         def.optimize.weights = sl_seam_cost_none();
+        def.optimize.empty_cost = 0.0; /* charts and seams alone are compared */
+        def.optimize.effort = target == PROTOTYPE_ROW ? PROTOTYPE_EFFORT : def.optimize.effort;
         def.segment.symmetry = SL_SYMMETRY_USE_OFF;
     }
     const double start = cpu_seconds();
