@@ -51,6 +51,7 @@ sl_atlas_def variant_def(int variant, const atlas_row *same)
     }
     if (variant == SAME_L2) {
         def.optimize.empty_cost = 0.0;
+        def.optimize.effort = 0.0;
         def.optimize.target_stretch = fmax(same->l2, 1.0 + 1e-6);
         def.optimize.target_angle = fmax(same->angle, def.optimize.target_angle);
         def.optimize.max_stretch = fmax(def.optimize.max_stretch, same->l2);

@@ -12,6 +12,7 @@
 
 /* Attempts = triangles of work over those of the piece. */
 static const double COARSE_WORK = 4000.0, FINE_WORK = 240000.0;
+static const double FINE = 0.1; /* coarseness of the targets below which seams are many and greed costs most */
 enum { MOST_RUINS = 48, MOST_LOOKS = 192 }; /* attempts; windows looked at */
 static const double LEAST_SAVING = 0.1;     /* of a ruin */
 static const double GAP = 0.05;             /* over the surface's unit, between banks that are still no hindrance */
@@ -185,7 +186,7 @@ cleanup:
 
 static int32_t attempts(const sl_opt_state *state)
 {
-    const double work = sl_opt_coarseness(state->def) < 1.0 ? FINE_WORK : COARSE_WORK;
+    const double work = sl_opt_coarseness(state->def) < FINE ? FINE_WORK : COARSE_WORK;
     return (int32_t)fmin(state->def->effort * work / state->surface->patch->nt, MOST_RUINS);
 }
 

@@ -18,8 +18,8 @@
 #include <time.h>
 
 enum { RESOLUTION = 2048, MOST_ROWS = 256, TARGETS = 6, MESHES = 8 };
-enum { PROTOTYPE_ROW = 4, DEFAULT = 5 };    /* of the targets */
-static const double PROTOTYPE_EFFORT = 3.0; /* it took minutes */
+enum { PROTOTYPE_ROW = 4, DEFAULT = 5 };     /* of the targets */
+static const double PROTOTYPE_EFFORT = 60.0; /* it took minutes */
 static const char *const MESH[MESHES] = {"cow",         "spot",    "suzanne",    "homer",
                                          "cheburashka", "fandisk", "rocker-arm", "hand"};
 static const char *const TARGET[TARGETS] = {"uvatlas", "fine", "xatlas-l2", "xatlas-both", "prototype", "default"};

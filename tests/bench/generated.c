@@ -53,6 +53,7 @@ static sl_atlas_def best_def(const sl_atlas_measure *paper)
     def.optimize.weights = sl_seam_cost_none();
     def.optimize.protect = SL_PROTECT_NONE;
     def.optimize.empty_cost = 0.0;
+    def.optimize.effort = 0.0;
     def.optimize.target_stretch = fmax(paper->global.l2, 1.0 + LEAST_BUDGET);
     def.optimize.target_angle = fmax(paper->global.angle_mean, ANGLE);
     def.pack.resolution = RESOLUTION;
